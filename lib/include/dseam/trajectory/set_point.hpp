@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "dseam/torch/torch_path.hpp"
+
+namespace dseam::trajectory {
+
+/// One sample of the timed path: what goes to the robot.
+///
+/// Units:   time in integer microseconds from START, so that nothing drifts over an hour.
+struct SetPoint {
+  std::uint32_t t_us = 0;
+  torch::TorchPose pose;
+  double s_mm = 0.0;
+  double speed_mm_s = 0.0;
+  double wire_feed_m_min = 0.0;
+  double voltage_v = 0.0;
+  torch::Segment segment = torch::Segment::kApproach;
+  bool arc = false;
+  bool gas = false;
+  bool wire = false;
+  std::uint8_t pass = 0;
+  std::uint8_t schedule = 0;
+};
+
+using SetPointView = std::span<const SetPoint>;
+
+}  // namespace dseam::trajectory
