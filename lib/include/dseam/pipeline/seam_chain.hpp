@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+
+#include "dseam/base/arena.hpp"
+#include "dseam/base/buffer.hpp"
+#include "dseam/base/result.hpp"
+#include "dseam/cloud/cloud.hpp"
+#include "dseam/depth/depth_image.hpp"
+#include "dseam/seam/seam_curve.hpp"
+#include "dseam/seam/seam_report.hpp"
+#include "dseam/splice/spliced_view.hpp"
+
+namespace dseam::pipeline {
+
+/// An axis-aligned box in base.
+struct RegionOfInterest {
+  Eigen::Vector3d min_base = Eigen::Vector3d::Zero();
+  Eigen::Vector3d max_base = Eigen::Vector3d::Zero();
+};
+
+/// What the seam is sought in. Only the cloud is needed; frames make edges at a gap sharper.
+///
+/// Shape:   `views[i]` is the pose of `frames[i]`; both may be empty.
+struct SeamInput {
+  cloud::FusedCloudView cloud_base;
+  std::span<const depth::DepthImage> frames;
+  std::span<const splice::SplicedView> views;
+  std::optional<RegionOfInterest> region;
+  std::optional<double> expected_radius_mm;
+};
+
+/// From a fused cloud to the one closed seam in it, or to the reason why there is none.
+///
+/// Frame:   base.
+/// Memory:  `bytes()` from the arena at make(); run() takes none.
+/// Time:    bounded by the capacities; linear in points and pixels.
+/// Context: one thread; not the cycle path.
+class SeamChain {
+ public:
+  struct Config {
+    seam::ReferenceCurve reference = seam::ReferenceCurve::kShellEdge;
+    double min_coverage = 0.80;
+    double max_hole_rad = 1.0471975511965976;  ///< 60 degrees.
+    double max_sigma_mm = 1.0;
+    double point_spacing_mm = 0.5;
+    double start_angle_rad = 0.0;    ///< About the nozzle's axis, from base x laid into the ring.
+    bool counter_clockwise = true;   ///< Seen from the nozzle's free end.
+    double hand_eye_sigma_mm = 0.0;  ///< 0: not known; added to the predicted sigmas.
+  };
+  struct Capacity {
+    std::size_t max_points = 262144;
+    std::size_t max_edge_intervals = 16384;
+  };
+
+  [[nodiscard]] static std::size_t bytes(const Capacity& capacity) noexcept;
+  /// kInvalidArgument: a value outside its range. kOutOfMemory: the arena is too small.
+  [[nodiscard]] static Result<SeamChain> make(const Config& config, const Capacity& capacity,
+                                              Arena& arena) noexcept;
+
+  seam::SeamReport run(const SeamInput& in, Buffer<seam::SeamPoint>& out) noexcept;
+
+ private:
+  SeamChain(const Config& config, const Capacity& capacity) noexcept
+      : config_(config), capacity_(capacity) {}
+
+  Config config_;
+  Capacity capacity_;
+};
+
+}  // namespace dseam::pipeline
