@@ -1,8 +1,55 @@
-# The two commands: `make demo` and `make test`.
-PRESET ?= host-release
+# The commands of the project. `make demo` and `make test` are the two that a newcomer needs.
+# Each installs what is missing from Debian (cmake/install_packages.sh), configures, builds, runs.
 
-.PHONY: test
-test:
+# x86-64-v3 where the processor has it (avx2, fma, bmi2 ...), else the baseline of its architecture.
+V3 := $(shell /lib64/ld-linux-x86-64.so.2 --help 2>/dev/null | grep -c 'x86-64-v3 .supported')
+PRESET ?= $(if $(filter 1,$(V3)),host-release,host-baseline)
+JOBS ?= $(shell nproc)
+OUT ?= out/demo
+BUILD = build/$(PRESET)
+INSTALL = cmake/install_packages.sh
+
+.PHONY: demo test check check-long cross bench paper-tables test-vm configure build clean
+
+demo: build
+	$(BUILD)/examples/dseam/dseam weld --camera sim --robot sim --out $(OUT)
+
+test: build
+	ctest --preset $(PRESET) -LE 'long|vm' -j $(JOBS)
+
+configure:
+	@$(INSTALL) quick
 	cmake --preset $(PRESET)
-	cmake --build --preset $(PRESET)
-	ctest --preset $(PRESET)
+
+build: configure
+	cmake --build --preset $(PRESET) -j $(JOBS)
+
+# What a reviewer would say: format, layers, sizes, names, the second compiler.
+check:
+	@$(INSTALL) quick check
+	tests/house/run_checks.sh
+
+# Both other processors: aarch64 under qemu-user, and lib/ on a bare Cortex-M7 without a heap.
+cross:
+	@$(INSTALL) quick cross
+	cmake --preset aarch64-linux-release
+	cmake --build --preset aarch64-linux-release -j $(JOBS)
+	ctest --preset aarch64-linux-release -LE 'long|vm' -j $(JOBS)
+	cmake --preset cortex-m7-none-release
+	cmake --build --preset cortex-m7-none-release -j $(JOBS)
+
+bench paper-tables check-long: heavy
+	cmake --build --preset $(PRESET) -j $(JOBS) --target $@
+
+.PHONY: heavy
+heavy:
+	@$(INSTALL) quick bench
+	cmake --preset $(PRESET) -DDSEAM_BUILD_BENCH=ON
+	cmake --build --preset $(PRESET) -j $(JOBS)
+
+test-vm: build
+	@$(INSTALL) vm
+	tests/vm/run.sh $(BUILD)
+
+clean:
+	rm -rf build out
