@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "command/invocation.hpp"
+
+namespace dseam::program {
+
+// Each adds its sub-command, which stores in `invocation.run` what it does.
+void add_config(CLI::App& app, Invocation& invocation);
+
+}  // namespace dseam::program

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace dseam::program {
+
+/// One of several named values. Bound to an enumeration by choice().
+struct Choice {
+  std::vector<std::string> names;
+  std::function<std::size_t()> get;
+  std::function<void(std::size_t)> set;
+};
+
+/// Where the value of a key lives: in the very struct that a stage is made from, so that its
+/// default is the stage's own and stands nowhere twice.
+using Field =
+    std::variant<bool*, double*, float*, std::uint16_t*, std::uint32_t*, std::string*, Choice>;
+
+/// One key of the configuration file: the only place that knows its name, range and meaning.
+struct Key {
+  std::string section;
+  std::string name;
+  Field field;
+  std::string comment;
+  std::string unit = {};
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] std::string path() const { return section + "." + name; }
+};
+
+/// A choice over an enumeration whose values count from zero in the order of `names`.
+template <typename Enum>
+Choice choice(Enum& value, std::vector<std::string> names) {
+  return {std::move(names), [&value] { return static_cast<std::size_t>(value); },
+          [&value](std::size_t i) { value = static_cast<Enum>(i); }};
+}
+
+/// The key's value as TOML writes it.
+[[nodiscard]] std::string value_text(const Key& key);
+/// What the key allows, for people: "0.2 to 10 mm", "true or false", "a or b".
+[[nodiscard]] std::string range_text(const Key& key);
+
+}  // namespace dseam::program

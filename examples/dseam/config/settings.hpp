@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "config/key.hpp"
+#include "dseam/pipeline/seam_chain.hpp"
+
+namespace dseam::program {
+
+enum class Method : std::uint8_t { kDseam, kPaper };
+
+/// Everything that can be configured, in the structs that the stages are made from.
+struct Settings {
+  Method method = Method::kDseam;
+  pipeline::SeamChain::Config seam;
+};
+
+/// The table of all keys, bound to `settings`, which must outlive it.
+[[nodiscard]] std::vector<Key> keys_of(Settings& settings);
+
+}  // namespace dseam::program

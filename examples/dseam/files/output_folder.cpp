@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "files/output_folder.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include "failure.hpp"
+
+namespace dseam::program {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what) {
+  throw Failure(ExitCode::kUsage, path.string() + ": cannot be written: " + what);
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
+  std::error_code error;
+  made_ = fs::create_directories(folder_, error);
+  if (error) {
+    fail(folder_, error.message());
+  }
+  if (::access(folder_.c_str(), W_OK | X_OK) != 0) {
+    fail(folder_, std::strerror(errno));
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  for (const std::string& name : pending_) {
+    fs::remove(temporary(name), ignored);
+  }
+  if (made_) {
+    fs::remove(folder_, ignored);  // Only when it is empty: nothing was committed.
+  }
+}
+
+fs::path OutputFolder::temporary(const std::string& name) const {
+  return folder_ / ("." + name + "." + std::to_string(::getpid()) + ".tmp");
+}
+
+fs::path OutputFolder::reserve(const std::string& name) {
+  pending_.push_back(name);
+  return temporary(name);
+}
+
+void OutputFolder::write(const std::string& name, const Writer& writer) {
+  std::ofstream out(reserve(name), std::ios::binary);
+  writer(out);
+  out.close();
+  if (!out) {
+    fail(path(name), std::strerror(errno));
+  }
+}
+
+void OutputFolder::commit() {
+  for (const std::string& name : pending_) {
+    std::error_code error;
+    fs::rename(temporary(name), path(name), error);
+    if (error) {
+      fail(path(name), error.message());
+    }
+  }
+  pending_.clear();
+}
+
+}  // namespace dseam::program
