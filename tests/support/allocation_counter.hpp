@@ -16,4 +16,14 @@ class AllocationCounter {
   std::uint64_t start_;
 };
 
+/// The same for the calling thread alone: for code beside a library whose own threads allocate.
+class ThreadAllocationCounter {
+ public:
+  ThreadAllocationCounter() noexcept;
+  [[nodiscard]] std::uint64_t count() const noexcept;
+
+ private:
+  std::uint64_t start_;
+};
+
 }  // namespace dseam::test

@@ -37,7 +37,22 @@ struct CameraHealth {
   std::uint64_t reconnects = 0;
 };
 
-class DepthCamera;
+/// Whoever lends frames and takes them back; every DepthCamera is one.
+class FrameLender {
+ public:
+  FrameLender() = default;
+  FrameLender(const FrameLender&) = delete;
+  FrameLender& operator=(const FrameLender&) = delete;
+
+  /// Ends the loan of a slot; a FrameLease does it.
+  void give_back(std::uint32_t slot) noexcept { do_give_back(slot); }
+
+ protected:
+  ~FrameLender() = default;
+
+ private:
+  virtual void do_give_back(std::uint32_t slot) noexcept = 0;
+};
 
 /// A frame on loan: the buffer goes back to the camera's pool when the lease ends.
 ///
@@ -45,7 +60,7 @@ class DepthCamera;
 class FrameLease {
  public:
   FrameLease() = default;
-  FrameLease(DepthCamera& owner, const DepthFrame& frame, std::uint32_t slot) noexcept
+  FrameLease(FrameLender& owner, const DepthFrame& frame, std::uint32_t slot) noexcept
       : owner_(&owner), frame_(frame), slot_(slot) {}
   FrameLease(FrameLease&& other) noexcept { swap(other); }
   FrameLease& operator=(FrameLease&& other) noexcept {
@@ -54,7 +69,11 @@ class FrameLease {
   }
   FrameLease(const FrameLease&) = delete;
   FrameLease& operator=(const FrameLease&) = delete;
-  ~FrameLease();
+  ~FrameLease() {
+    if (owner_ != nullptr) {
+      owner_->give_back(slot_);
+    }
+  }
 
   [[nodiscard]] const DepthFrame& frame() const noexcept { return frame_; }
 
@@ -65,29 +84,29 @@ class FrameLease {
     std::swap(slot_, other.slot_);
   }
 
-  DepthCamera* owner_ = nullptr;
+  FrameLender* owner_ = nullptr;
   DepthFrame frame_;
   std::uint32_t slot_ = 0;
 };
 
 /// One opened depth camera. Backends: hal/aravis, hal/v4l2, hal/replay, hal/sim, hal/fake.
+/// `tests/contract/depth_camera_contract.hpp` holds every one of them to what is said here.
 ///
-/// Context: start and stop from one control thread, next() from one consumer thread.
-class DepthCamera {
+/// Context: start and stop from one control thread, next() from one consumer thread, also at the
+///          same time; frame leases end on any thread.
+class DepthCamera : public FrameLender {
  public:
-  DepthCamera() = default;
-  DepthCamera(const DepthCamera&) = delete;
-  DepthCamera& operator=(const DepthCamera&) = delete;
-
   /// What the device granted at open; constant until it is opened again.
   [[nodiscard]] const depth::DepthModel& model() const noexcept { return do_model(); }
+  /// Errors:  kUnavailable: started already. Else what the device says.
   Result<> start(FrameMode mode) noexcept { return do_start(mode); }
   /// Waits at most `timeout` for a complete frame; zero polls.
   ///
   /// Errors:  kTimeout: none came. kDisconnected: gone, reconnecting by itself where it can.
-  ///          kNotFound: a recording is at its end.
+  ///          kNotFound: a recording is at its end. kUnavailable: not started.
   Result<FrameLease> next(std::chrono::nanoseconds timeout) noexcept { return do_next(timeout); }
-  /// Idempotent; returns within 100 ms in every state.
+  /// Idempotent; returns within 100 ms in every state. Leases that are still out stay readable
+  /// until the next start().
   void stop() noexcept { do_stop(); }
   [[nodiscard]] CameraHealth health() const noexcept { return do_health(); }
 
@@ -96,19 +115,11 @@ class DepthCamera {
       default;  // Owners hold the concrete type: no delete, so no heap, through a base.
 
  private:
-  friend class FrameLease;
   [[nodiscard]] virtual const depth::DepthModel& do_model() const noexcept = 0;
   virtual Result<> do_start(FrameMode mode) noexcept = 0;
   virtual Result<FrameLease> do_next(std::chrono::nanoseconds timeout) noexcept = 0;
   virtual void do_stop() noexcept = 0;
   [[nodiscard]] virtual CameraHealth do_health() const noexcept = 0;
-  virtual void do_give_back(std::uint32_t slot) noexcept = 0;
 };
-
-inline FrameLease::~FrameLease() {
-  if (owner_ != nullptr) {
-    owner_->do_give_back(slot_);
-  }
-}
 
 }  // namespace dseam::hal

@@ -13,7 +13,9 @@ enum class SampleFormat : std::uint8_t {
   kC16,           ///< Coord3D_C16, Z16, Y16, Mono16: one 16-bit sample, little endian.
   kC32f,          ///< Coord3D_C32f.
   kAC16,          ///< Coord3D_AC16: two samples, line scan.
+  kAC16Planar,    ///< Coord3D_AC16_Planar: two planes.
   kABC16,         ///< Coord3D_ABC16: three samples a pixel.
+  kABC16Planar,   ///< Coord3D_ABC16_Planar: three planes.
   kABC32f,        ///< Coord3D_ABC32f.
   kABC32fPlanar,  ///< Coord3D_ABC32f_Planar: three planes.
 };
@@ -24,18 +26,20 @@ enum class Geometry : std::uint8_t {
   kCalibrated,  ///< x, y, z are all given.
   kRectified,   ///< x and y on an even grid, z given.
   kDisparity,   ///< z = focal length * baseline / disparity.
-  kLineScan,    ///< One profile: x and z given, y is the transport.
+  kLineScan,    ///< A profile a row: z, and x unless on an even grid; y is the transport.
 };
 
 /// A depth camera's data as read from the device at open, in the terms of SFNC, never of vendors.
 ///
-/// Units:   value = raw * scale + offset, then times `mm_per_unit`.
+/// Units:   value = raw * scale + offset, then times `mm_per_unit`; a disparity is in pixels.
+///          An even grid has raw = column for x and raw = row for y.
 /// Source:  GenICam SFNC 2.7, chapter 3D Scan Control.
 struct DepthModel {
   SampleFormat format = SampleFormat::kC16;
   Geometry geometry = Geometry::kProjected;
   Intrinsics intrinsics;
-  std::uint32_t row_stride_bytes = 0;  ///< 0: rows follow each other without padding.
+  std::uint32_t row_stride_bytes = 0;       ///< 0: rows follow each other without padding.
+  std::uint32_t gray_row_stride_bytes = 0;  ///< The same for the gray image.
   std::array<double, 3> scale{1.0, 1.0, 1.0};
   std::array<double, 3> offset{0.0, 0.0, 0.0};
   bool has_invalid_value = true;  ///< Tested on the raw sample, before scaling.
