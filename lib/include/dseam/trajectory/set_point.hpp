@@ -5,6 +5,7 @@
 #include <span>
 
 #include "dseam/torch/torch_path.hpp"
+#include "dseam/trajectory/limits.hpp"
 
 namespace dseam::trajectory {
 
@@ -19,6 +20,7 @@ struct SetPoint {
   double wire_feed_m_min = 0.0;
   double voltage_v = 0.0;
   torch::Segment segment = torch::Segment::kApproach;
+  LimitKind limited_by = LimitKind::kNone;
   bool arc = false;
   bool gas = false;
   bool wire = false;

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole way from a seam to set points, as the main job goes it.
+#include <gtest/gtest.h>
+
+#include "dseam/torch/path_planner.hpp"
+#include "dseam/torch/torch_planner.hpp"
+#include "dseam/trajectory/sampler.hpp"
+#include "support/allocation_counter.hpp"
+#include "support/analytic_saddle.hpp"
+#include "support/arena_owner.hpp"
+
+namespace {
+
+using dseam::torch::PathPlanner;
+using dseam::torch::PathPoint;
+using dseam::torch::TorchPlanner;
+using dseam::torch::TorchPoint;
+using dseam::trajectory::LimitKind;
+using dseam::trajectory::Sampler;
+using dseam::trajectory::SetPoint;
+using dseam::trajectory::TimeScaling;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+struct WeldRun {
+  std::vector<TorchPoint> torch;
+  std::vector<PathPoint> path;
+  std::vector<SetPoint> set_points;
+  PathPlanner::Report report;
+};
+
+WeldRun run(const dseam::test::Saddle& saddle, const PathPlanner::Config& config,
+            std::uint32_t period_us) {
+  constexpr std::size_t kRoom = 40000;
+  dseam::test::ArenaOwner owner(TorchPlanner::bytes(1000) + TimeScaling::bytes(kRoom));
+  const auto seam = saddle.points(720);
+  WeldRun run;
+  run.torch.resize(2000);
+  run.path.resize(kRoom);
+  dseam::Buffer<TorchPoint> torch(run.torch);
+  dseam::Buffer<PathPoint> path(run.path);
+  TorchPlanner torch_planner = TorchPlanner::make({}, 1000, owner.arena()).value();
+  PathPlanner path_planner = PathPlanner::make(config).value();
+  TimeScaling timing = TimeScaling::make({}, kRoom, owner.arena()).value();
+  const auto planned = torch_planner.run(dseam::test::view_of(seam), torch);
+  const dseam::test::AllocationCounter counter;
+  run.report = path_planner.run({torch.view(), planned.length_mm, true}, path);
+  EXPECT_EQ(timing.run(path.view()).state, TimeScaling::State::kTimed);
+  Sampler sampler = Sampler::make(timing.timed_path(), {}, period_us).value();
+  EXPECT_EQ(counter.count(), 0U);
+  run.set_points.resize(sampler.size());
+  dseam::Buffer<SetPoint> out(run.set_points);
+  const dseam::test::AllocationCounter sampling;
+  EXPECT_TRUE(sample_all(sampler, out));
+  EXPECT_EQ(sampling.count(), 0U);
+  run.torch.resize(torch.size());
+  run.path.resize(path.size());
+  return run;
+}
+
+TEST(WeldRun, the_torch_welds_once_round_and_over_the_start_at_constant_speed) {
+  const dseam::test::Saddle saddle{100.0, 40.0, 65 * kDegree, 15.0};
+
+  const WeldRun weld = run(saddle, {}, 1000);
+
+  ASSERT_EQ(weld.report.state, PathPlanner::State::kPlanned);
+  EXPECT_NEAR(weld.report.weld_mm, saddle.length_mm() + 10.0, 0.05);
+  double welded_mm = 0.0;
+  std::size_t at_speed = 0;
+  for (std::size_t i = 1; i < weld.set_points.size(); ++i) {
+    const SetPoint& a = weld.set_points[i - 1];
+    const SetPoint& b = weld.set_points[i];
+    const double step_mm = (b.pose.p_base - a.pose.p_base).norm();
+    welded_mm += a.arc && b.arc ? step_mm : 0.0;
+    const bool steady =
+        a.arc && a.limited_by == LimitKind::kNone && b.limited_by == LimitKind::kNone;
+    if (steady && b.arc) {
+      ++at_speed;
+      EXPECT_NEAR(step_mm / 1e-3, 8.0, 0.08);
+      EXPECT_LT((b.pose.p_base - saddle.at(saddle.angle_of(b.pose.p_base)).p_base).norm(), 0.01);
+      EXPECT_LT(b.pose.q_base_torch.angularDistance(a.pose.q_base_torch), 0.05 * kDegree);
+    }
+  }
+  EXPECT_NEAR(welded_mm, weld.report.weld_mm, 0.2);
+  EXPECT_GT(static_cast<double>(at_speed) * 0.008, 0.95 * weld.report.weld_mm);
+}
+
+TEST(WeldRun, starts_and_ends_at_rest_and_never_jumps) {
+  const WeldRun weld = run({}, {}, 1000);
+
+  EXPECT_EQ(weld.set_points.front().speed_mm_s, 0.0);
+  EXPECT_NEAR(weld.set_points.back().speed_mm_s, 0.0, 1e-6);
+  EXPECT_LT((weld.set_points.back().pose.p_base - weld.path.back().pose.p_base).norm(), 1e-6);
+  for (std::size_t i = 1; i < weld.set_points.size(); ++i) {
+    const SetPoint& a = weld.set_points[i - 1];
+    const SetPoint& b = weld.set_points[i];
+    EXPECT_EQ(b.t_us, a.t_us + 1000);
+    EXPECT_LT((b.pose.p_base - a.pose.p_base).norm(), 0.2501);
+  }
+}
+
+}  // namespace
