@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "dseam/search/lanes.hpp"
+
+namespace dseam::search {
+
+inline constexpr std::uint32_t kNoPoint = 0xFFFFFFFFU;
+
+/// Eight points that lie close together; unused places are infinitely far and have kNoPoint.
+struct alignas(32) Cell {
+  float x[kLanes];
+  float y[kLanes];
+  float z[kLanes];
+  std::uint32_t index[kLanes];
+};
+
+/// The boxes of eight cells, or of eight nodes of the level below; unused ones are inside out.
+struct alignas(32) Node {
+  float low_x[kLanes];
+  float low_y[kLanes];
+  float low_z[kLanes];
+  float high_x[kLanes];
+  float high_y[kLanes];
+  float high_z[kLanes];
+  std::uint32_t first_index[kLanes];  ///< The least index in the box: ties go to it.
+};
+
+/// An axis-aligned box; a point is one of no size.
+struct Box {
+  float low_x, low_y, low_z;
+  float high_x, high_y, high_z;
+};
+
+/// Squared distances of `box` to the eight boxes of `node`. A float distance computed between any
+/// two points inside is never less: subtraction, product and sum round monotonically.
+[[nodiscard]] inline FloatLanes squared_gaps(const Node& node, const Box& box) noexcept {
+  const auto gap = [](const float* low, const float* high, float box_low, float box_high) noexcept {
+    const FloatLanes outside = max(load(low) - splat(box_high), splat(box_low) - load(high));
+    return max(outside, splat(0.0F));
+  };
+  const FloatLanes x = gap(node.low_x, node.high_x, box.low_x, box.high_x);
+  const FloatLanes y = gap(node.low_y, node.high_y, box.low_y, box.high_y);
+  const FloatLanes z = gap(node.low_z, node.high_z, box.low_z, box.high_z);
+  return x * x + y * y + z * z;
+}
+
+/// How far a search still has to look.
+struct Reach {
+  float squared_mm2;               ///< Boxes beyond are left out.
+  std::uint32_t index = kNoPoint;  ///< So are boxes at this distance with no index under this one.
+};
+
+/// Cells in the order of a space-filling curve, and eight-fold boxes over them: a tree without
+/// pointers whose shape follows from the number of cells alone.
+class CellTree {
+ public:
+  static constexpr std::size_t kMaxLevels = 10;  // 8^11 points are more than 32 bits can count.
+
+  [[nodiscard]] static constexpr std::size_t cells_of(std::size_t points) noexcept {
+    return (points + kLanes - 1) / kLanes;
+  }
+  [[nodiscard]] static constexpr std::size_t nodes_of(std::size_t cells) noexcept {
+    std::size_t sum = 0;
+    do {
+      cells = (cells + kLanes - 1) / kLanes;
+      sum += cells;
+    } while (cells > 1);
+    return sum;
+  }
+
+  CellTree() = default;
+  CellTree(std::span<Cell> cells, std::span<Node> nodes) noexcept
+      : cell_storage_(cells), node_storage_(nodes) {}
+
+  /// To be filled before build().
+  [[nodiscard]] std::span<Cell> storage() noexcept { return cell_storage_; }
+  /// Computes the boxes over the first `num_cells` cells.
+  void build(std::size_t num_cells) noexcept;
+
+  [[nodiscard]] std::span<const Cell> cells() const noexcept {
+    return cell_storage_.first(num_cells_);
+  }
+  [[nodiscard]] Box box_of(std::uint32_t cell) const noexcept;
+  /// A cell near the point: the way down that looks shortest at each step.
+  [[nodiscard]] std::uint32_t cell_near(const Box& point) const noexcept;
+
+  /// Calls `visit(cell)` for `start`, then for every other cell within `reach()` of `box`, nearest
+  /// relations first. `reach` may shrink meanwhile.
+  ///
+  /// Time:    bounded by the number of cells; no recursion.
+  template <typename ReachOf, typename Visit>
+  void visit_around(std::uint32_t start, const Box& box, const ReachOf& reach,
+                    const Visit& visit) const noexcept {
+    visit(start);
+    std::uint32_t child = start;
+    for (std::size_t level = 0; level < num_levels_; ++level) {
+      const std::uint32_t node = child / kLanes;
+      const std::uint32_t others = near_children(level, node, box, reach());
+      descend(level, node, others & ~(1U << (child % kLanes)), box, reach, visit);
+      child = node;
+    }
+  }
+
+ private:
+  struct Pending {
+    std::uint32_t node;
+    std::uint32_t children;  ///< One bit each.
+  };
+
+  [[nodiscard]] std::uint32_t near_children(std::size_t level, std::uint32_t node, const Box& box,
+                                            Reach reach) const noexcept {
+    const Node& n = node_storage_[level_begin_[level] + node];
+    const FloatLanes gaps = squared_gaps(n, box);
+    const std::uint32_t nearer = bits(gaps < splat(reach.squared_mm2));
+    std::uint32_t level_with = bits(gaps <= splat(reach.squared_mm2)) & ~nearer;
+    std::uint32_t near = nearer;
+    for (; level_with != 0; level_with &= level_with - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(level_with));
+      near |= (n.first_index[lane] < reach.index ? 1U : 0U) << lane;
+    }
+    return near;
+  }
+
+  template <typename ReachOf, typename Visit>
+  void descend(std::size_t top, std::uint32_t node, std::uint32_t children, const Box& box,
+               const ReachOf& reach, const Visit& visit) const noexcept {
+    std::array<Pending, kMaxLevels> pending;
+    pending[top] = {node, children};
+    for (std::size_t level = top; level <= top;) {
+      Pending& at = pending[level];
+      if (at.children == 0) {
+        ++level;
+        continue;
+      }
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(at.children));
+      at.children &= at.children - 1;
+      const std::uint32_t child = at.node * static_cast<std::uint32_t>(kLanes) + lane;
+      if (level == 0) {
+        visit(child);
+      } else {
+        --level;
+        pending[level] = {child, near_children(level, child, box, reach())};
+      }
+    }
+  }
+
+  void build_level(std::size_t level, std::size_t num_children) noexcept;
+
+  std::span<Cell> cell_storage_;
+  std::span<Node> node_storage_;
+  std::array<std::uint32_t, kMaxLevels> level_begin_{};
+  std::size_t num_levels_ = 0;
+  std::size_t num_cells_ = 0;
+};
+
+}  // namespace dseam::search

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+/// Eight numbers that go through the same arithmetic at once.
+///
+/// One AVX register, two of SSE or NEON, plain registers on a microcontroller: the compiler's own
+/// vectors do it, without intrinsics. Every operation is exact or correctly rounded lane by lane,
+/// so the width of the registers cannot change a bit of a result.
+namespace dseam::search {
+
+inline constexpr std::size_t kLanes = 8;
+
+#if defined(__AVX__)
+inline constexpr std::size_t kPartLanes = 8;
+#else
+inline constexpr std::size_t kPartLanes = 4;
+#endif
+typedef float FloatPart __attribute__((vector_size(kPartLanes * sizeof(float))));
+typedef std::int32_t IntPart __attribute__((vector_size(kPartLanes * sizeof(std::int32_t))));
+
+template <typename Part>
+struct Lanes {
+#if defined(__AVX__)
+  Part low;
+
+  template <typename Op, typename... Others>
+  [[gnu::always_inline]] static auto each(Op op, const Others&... others) noexcept {
+    return Lanes<decltype(op(others.low...))>{op(others.low...)};
+  }
+#else
+  Part low;
+  Part high;
+
+  template <typename Op, typename... Others>
+  [[gnu::always_inline]] static auto each(Op op, const Others&... others) noexcept {
+    return Lanes<decltype(op(others.low...))>{op(others.low...), op(others.high...)};
+  }
+#endif
+  [[gnu::always_inline]] auto operator[](std::size_t i) const noexcept {
+#if defined(__AVX__)
+    return low[i];
+#else
+    return i < kPartLanes ? low[i] : high[i - kPartLanes];
+#endif
+  }
+};
+
+using FloatLanes = Lanes<FloatPart>;
+using IntLanes = Lanes<IntPart>;  ///< Also the mask of a comparison: all bits set, or none.
+
+// One line for each operator; `each` spreads it over the parts.
+#define DSEAM_LANES_OPERATOR(type, result, op)                                          \
+  [[gnu::always_inline, nodiscard]] inline result operator op(const type& a,            \
+                                                              const type& b) noexcept { \
+    return type::each([](auto p, auto q) { return p op q; }, a, b);                     \
+  }
+DSEAM_LANES_OPERATOR(FloatLanes, FloatLanes, +)
+DSEAM_LANES_OPERATOR(FloatLanes, FloatLanes, -)
+DSEAM_LANES_OPERATOR(FloatLanes, FloatLanes, *)
+DSEAM_LANES_OPERATOR(FloatLanes, FloatLanes, /)
+DSEAM_LANES_OPERATOR(FloatLanes, IntLanes, <)
+DSEAM_LANES_OPERATOR(FloatLanes, IntLanes, <=)
+DSEAM_LANES_OPERATOR(FloatLanes, IntLanes, >)
+DSEAM_LANES_OPERATOR(IntLanes, IntLanes, +)
+DSEAM_LANES_OPERATOR(IntLanes, IntLanes, -)
+DSEAM_LANES_OPERATOR(IntLanes, IntLanes, &)
+DSEAM_LANES_OPERATOR(IntLanes, IntLanes, |)
+DSEAM_LANES_OPERATOR(IntLanes, IntLanes, ^)
+DSEAM_LANES_OPERATOR(IntLanes, IntLanes, <)
+DSEAM_LANES_OPERATOR(IntLanes, IntLanes, ==)
+#undef DSEAM_LANES_OPERATOR
+
+template <typename T, typename E>
+[[gnu::always_inline, nodiscard]] inline T load_lanes(const E* from) noexcept {
+  T lanes;
+  static_assert(sizeof lanes == kLanes * sizeof *from);
+  std::memcpy(&lanes, from, sizeof lanes);
+  return lanes;
+}
+[[gnu::always_inline, nodiscard]] inline FloatLanes load(const float* from) noexcept {
+  return load_lanes<FloatLanes>(from);
+}
+[[gnu::always_inline, nodiscard]] inline IntLanes load(const std::int32_t* from) noexcept {
+  return load_lanes<IntLanes>(from);
+}
+template <typename Part, typename E>
+[[gnu::always_inline]] inline void store(const Lanes<Part>& lanes, E* to) noexcept {
+  static_assert(sizeof lanes == kLanes * sizeof *to);
+  std::memcpy(to, &lanes, sizeof lanes);
+}
+[[gnu::always_inline, nodiscard]] inline FloatLanes splat(float value) noexcept {
+  return FloatLanes::each([value](auto zero) { return value - zero; }, FloatLanes{});
+}
+[[gnu::always_inline, nodiscard]] inline IntLanes splat(std::int32_t value) noexcept {
+  return IntLanes::each([value](auto zero) { return value - zero; }, IntLanes{});
+}
+/// `a` where the mask is set, else `b`.
+template <typename Part>
+[[gnu::always_inline, nodiscard]] inline Lanes<Part> select(const IntLanes& mask,
+                                                            const Lanes<Part>& a,
+                                                            const Lanes<Part>& b) noexcept {
+  return Lanes<Part>::each([](auto m, auto p, auto q) { return m ? p : q; }, mask, a, b);
+}
+/// The second argument where either is not a number.
+[[gnu::always_inline, nodiscard]] inline FloatLanes min(const FloatLanes& a,
+                                                        const FloatLanes& b) noexcept {
+  return FloatLanes::each([](auto p, auto q) { return p < q ? p : q; }, a, b);
+}
+[[gnu::always_inline, nodiscard]] inline FloatLanes max(const FloatLanes& a,
+                                                        const FloatLanes& b) noexcept {
+  return FloatLanes::each([](auto p, auto q) { return p > q ? p : q; }, a, b);
+}
+[[gnu::always_inline, nodiscard]] inline FloatLanes to_float(const IntLanes& a) noexcept {
+  return IntLanes::each([](auto p) { return __builtin_convertvector(p, FloatPart); }, a);
+}
+/// Towards zero; the caller has checked the range.
+[[gnu::always_inline, nodiscard]] inline IntLanes to_int(const FloatLanes& a) noexcept {
+  return FloatLanes::each([](auto p) { return __builtin_convertvector(p, IntPart); }, a);
+}
+[[gnu::always_inline, nodiscard]] inline IntLanes widen(const std::uint16_t* from) noexcept {
+  typedef std::uint16_t ShortPart __attribute__((vector_size(kPartLanes * sizeof(std::uint16_t))));
+  Lanes<ShortPart> narrow;
+  std::memcpy(&narrow, from, sizeof narrow);
+  return Lanes<ShortPart>::each([](auto p) { return __builtin_convertvector(p, IntPart); }, narrow);
+}
+/// The greatest whole number that is not above; the caller has checked the range.
+[[gnu::always_inline, nodiscard]] inline IntLanes floor_to_int(const FloatLanes& a) noexcept {
+  const IntLanes towards_zero = to_int(a);
+  return towards_zero + (to_float(towards_zero) > a);  // A mask that is set counts as -1.
+}
+[[gnu::always_inline, nodiscard]] inline FloatLanes magnitude(const FloatLanes& a) noexcept {
+  IntLanes raw;
+  std::memcpy(&raw, &a, sizeof raw);
+  raw = raw & splat(0x7FFFFFFF);
+  FloatLanes positive;
+  std::memcpy(&positive, &raw, sizeof positive);
+  return positive;
+}
+template <int kShift>
+[[gnu::always_inline, nodiscard]] inline IntLanes shift_left(const IntLanes& a) noexcept {
+  return IntLanes::each([](auto p) { return p << kShift; }, a);
+}
+/// `a` where the mask is set, else zero.
+[[gnu::always_inline, nodiscard]] inline FloatLanes keep(const IntLanes& mask,
+                                                         const FloatLanes& a) noexcept {
+  IntLanes raw;
+  std::memcpy(&raw, &a, sizeof raw);
+  raw = raw & mask;
+  FloatLanes kept;
+  std::memcpy(&kept, &raw, sizeof kept);
+  return kept;
+}
+[[gnu::always_inline, nodiscard]] inline FloatLanes sqrt(const FloatLanes& a) noexcept {
+  float each[kLanes];
+  store(a, each);
+  for (float& value : each) {
+    value = __builtin_sqrtf(value);
+  }
+  return load(each);
+}
+/// Bit i is set where lane i of the mask is.
+[[gnu::always_inline, nodiscard]] inline std::uint32_t bits(const IntLanes& mask) noexcept {
+#if defined(__AVX__)
+  FloatPart signs;
+  std::memcpy(&signs, &mask.low, sizeof signs);
+  return static_cast<std::uint32_t>(__builtin_ia32_movmskps256(signs));
+#elif defined(__SSE2__)
+  FloatPart low;
+  FloatPart high;
+  std::memcpy(&low, &mask.low, sizeof low);
+  std::memcpy(&high, &mask.high, sizeof high);
+  return static_cast<std::uint32_t>(__builtin_ia32_movmskps(low) |
+                                    (__builtin_ia32_movmskps(high) << 4));
+#else
+  const IntPart kLow = {1, 2, 4, 8};
+  const IntPart kHigh = {16, 32, 64, 128};
+  const IntPart set = (mask.low & kLow) | (mask.high & kHigh);
+  return static_cast<std::uint32_t>((set[0] | set[1]) | (set[2] | set[3]));
+#endif
+}
+[[gnu::always_inline, nodiscard]] inline float largest(const FloatLanes& a) noexcept {
+  float most = a[0];
+  for (std::size_t i = 1; i < kLanes; ++i) {
+    most = a[i] > most ? a[i] : most;
+  }
+  return most;
+}
+
+}  // namespace dseam::search

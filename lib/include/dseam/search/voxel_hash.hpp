@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "dseam/base/arena.hpp"
+#include "dseam/base/result.hpp"
+
+namespace dseam::search {
+
+/// A cell of a cubic lattice as 3 x 21 bits.
+struct CellKey {
+  std::uint64_t bits = 0;
+
+  static constexpr std::int32_t kMaxAxis = 1 << 20;  ///< Axes lie in [-kMaxAxis, kMaxAxis).
+  /// The axes must be in range.
+  [[nodiscard]] static constexpr CellKey of(std::int32_t x, std::int32_t y,
+                                            std::int32_t z) noexcept {
+    return {axis(x) | (axis(y) << 21U) | (axis(z) << 42U)};
+  }
+  [[nodiscard]] constexpr std::int32_t x() const noexcept { return value(0); }
+  [[nodiscard]] constexpr std::int32_t y() const noexcept { return value(21); }
+  [[nodiscard]] constexpr std::int32_t z() const noexcept { return value(42); }
+  friend constexpr bool operator==(CellKey, CellKey) = default;
+
+ private:
+  [[nodiscard]] static constexpr std::uint64_t axis(std::int32_t value) noexcept {
+    return static_cast<std::uint64_t>(value + kMaxAxis);
+  }
+  [[nodiscard]] constexpr std::int32_t value(std::uint32_t shift) const noexcept {
+    return static_cast<std::int32_t>((bits >> shift) & 0x1FFFFFU) - kMaxAxis;
+  }
+};
+
+/// Numbers lattice cells in the order in which they are first seen.
+///
+/// Open addressing with linear probing over at least twice as many slots as cells. The caller's
+/// secret is mixed into every hash, so that crafted coordinates cannot pile up in one place; the
+/// numbers do not depend on it.
+///
+/// Memory:  24 to 40 bytes a cell.
+/// Time:    at most kMaxProbes slots an operation, expected under two.
+/// Context: real-time safe; one thread at a time.
+class VoxelHash {
+ public:
+  static constexpr std::uint32_t kFull = 0xFFFFFFFFU;
+  static constexpr std::uint32_t kAbsent = 0xFFFFFFFFU;
+  static constexpr std::uint32_t kMaxProbes = 256;
+  static constexpr std::uint64_t kDefaultSecret = 0x9E3779B97F4A7C15ULL;
+
+  [[nodiscard]] static constexpr std::size_t bytes(std::size_t max_cells) noexcept {
+    return Arena::bytes<Slot>(slots_of(max_cells)) + Arena::bytes<CellKey>(max_cells);
+  }
+  /// kInvalidArgument: no cell, or more than 2^30. kOutOfMemory: the arena is too small.
+  [[nodiscard]] static Result<VoxelHash> make(std::size_t max_cells, Arena& arena,
+                                              std::uint64_t secret = kDefaultSecret) noexcept;
+
+  void clear() noexcept;
+  /// The cell's number; a new cell gets the number size(). kFull when there is no room for it.
+  [[nodiscard]] std::uint32_t find_or_insert(CellKey key) noexcept;
+  [[nodiscard]] std::uint32_t find(CellKey key) const noexcept;
+
+  [[nodiscard]] std::span<const CellKey> keys() const noexcept { return keys_.first(size_); }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] std::size_t capacity() const noexcept { return keys_.size(); }
+
+ private:
+  // Half of the hash decides the slot, the other half is kept to spare most looks at the key.
+  struct Slot {
+    std::uint32_t number_plus_one;  ///< 0: free.
+    std::uint32_t tag;
+  };
+
+  [[nodiscard]] static constexpr std::size_t slots_of(std::size_t max_cells) noexcept {
+    return std::bit_ceil(2 * max_cells);
+  }
+  VoxelHash(std::size_t max_cells, Arena& arena, std::uint64_t secret) noexcept
+      : slots_(arena.take<Slot>(slots_of(max_cells))),
+        keys_(arena.take<CellKey>(max_cells)),
+        secret_(secret) {}
+  [[nodiscard]] std::uint64_t hash_of(CellKey key) const noexcept;
+
+  std::span<Slot> slots_;
+  std::span<CellKey> keys_;
+  std::uint64_t secret_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace dseam::search

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dseam/cloud/voxel_map.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "dseam/base/expects.hpp"
+
+namespace dseam::cloud {
+namespace {
+
+using search::CellKey;
+using search::FloatLanes;
+using search::IntLanes;
+using search::kLanes;
+using search::splat;
+using search::VoxelHash;
+
+constexpr float kMaxAxis = static_cast<float>(CellKey::kMaxAxis);
+constexpr float kStepsPerCell = static_cast<float>(1 << 20);
+
+bool is_finite(geometry::Vec3f p) noexcept {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+// One axis of eight points: which cell, and how far into it in steps of 2^-20 cells.
+struct AxisCells {
+  alignas(32) std::int32_t cell[kLanes];
+  alignas(32) std::int32_t step[kLanes];
+};
+
+[[gnu::always_inline]] inline FloatLanes lattice(const FloatLanes& coordinate, float origin_mm,
+                                                 float cells_per_mm) noexcept {
+  return (coordinate - splat(origin_mm)) * splat(cells_per_mm);
+}
+
+// What is out of range counts as 0 until it is dropped; no other value reaches an integer.
+[[gnu::always_inline]] inline void split(const FloatLanes& lattice, const IntLanes& in_range,
+                                         AxisCells& axis) noexcept {
+  const FloatLanes safe = search::keep(in_range, lattice);
+  const IntLanes cell = search::floor_to_int(safe);
+  store(cell, axis.cell);
+  store(search::to_int((safe - search::to_float(cell)) * splat(kStepsPerCell)), axis.step);
+}
+
+[[gnu::always_inline]] inline IntLanes in_range(const FloatLanes& lattice) noexcept {
+  return search::magnitude(lattice) < splat(kMaxAxis);  // False for what is not a number.
+}
+
+}  // namespace
+
+Result<VoxelMap> VoxelMap::make(const Config& config, std::size_t max_cells,
+                                Arena& arena) noexcept {
+  const bool sensible = config.cell_mm >= 1.0e-3F && config.cell_mm <= 1.0e6F;
+  if (!sensible || !is_finite(config.origin_mm)) {
+    return Errc::kInvalidArgument;
+  }
+  const auto hash = VoxelHash::make(max_cells, arena, config.secret);
+  if (!hash.ok()) {
+    return hash.error();
+  }
+  VoxelMap map(config, hash.value(), max_cells, arena);
+  if (arena.exhausted()) {
+    return Errc::kOutOfMemory;
+  }
+  return map;
+}
+
+VoxelMap::VoxelMap(const Config& config, const VoxelHash& hash, std::size_t max_cells,
+                   Arena& arena) noexcept
+    : config_(config),
+      cells_per_mm_(1.0F / config.cell_mm),
+      hash_(hash),
+      sums_(arena.take<Sum>(max_cells)),
+      centroids_(max_cells, arena),
+      count_(arena.take<std::uint32_t>(max_cells)),
+      seen_by_(arena.take<ViewMask>(max_cells)) {}
+
+void VoxelMap::clear() noexcept { hash_.clear(); }
+
+void VoxelMap::move_origin(geometry::Vec3f origin_mm) noexcept {
+  DSEAM_EXPECTS(is_finite(origin_mm));
+  config_.origin_mm = origin_mm;
+  clear();
+}
+
+VoxelMap::Report VoxelMap::insert(const CloudView& cloud, std::size_t view) noexcept {
+  DSEAM_EXPECTS(view < kMaxViews);
+  const auto seen_by = static_cast<ViewMask>(1U << view);
+  const std::size_t whole = cloud.size() / kLanes * kLanes;
+  Report report;
+  Run run;
+  for (std::size_t i = 0; i < whole; i += kLanes) {
+    insert_eight(search::load(&cloud.x[i]), search::load(&cloud.y[i]), search::load(&cloud.z[i]),
+                 0xFFU, seen_by, run, report);
+  }
+  if (const std::size_t rest = cloud.size() - whole; rest > 0) {
+    float x[kLanes] = {};
+    float y[kLanes] = {};
+    float z[kLanes] = {};
+    std::copy_n(&cloud.x[whole], rest, x);
+    std::copy_n(&cloud.y[whole], rest, y);
+    std::copy_n(&cloud.z[whole], rest, z);
+    insert_eight(search::load(x), search::load(y), search::load(z), (1U << rest) - 1U, seen_by, run,
+                 report);
+  }
+  close(run, seen_by, report);
+  return report;
+}
+
+void VoxelMap::insert_eight(const FloatLanes& x, const FloatLanes& y, const FloatLanes& z,
+                            std::uint32_t valid, ViewMask seen_by, Run& run,
+                            Report& report) noexcept {
+  const FloatLanes lx = lattice(x, config_.origin_mm.x, cells_per_mm_);
+  const FloatLanes ly = lattice(y, config_.origin_mm.y, cells_per_mm_);
+  const FloatLanes lz = lattice(z, config_.origin_mm.z, cells_per_mm_);
+  const IntLanes usable = in_range(lx) & in_range(ly) & in_range(lz);
+  AxisCells ax;
+  AxisCells ay;
+  AxisCells az;
+  split(lx, usable, ax);
+  split(ly, usable, ay);
+  split(lz, usable, az);
+  std::uint32_t left = valid & search::bits(usable);
+  report.dropped_out_of_range += static_cast<std::uint32_t>(std::popcount(valid ^ left));
+  for (; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+    const CellKey key = CellKey::of(ax.cell[i], ay.cell[i], az.cell[i]);
+    if (key != run.key) {
+      close(run, seen_by, report);
+      run.key = key;
+    }
+    run.x += static_cast<std::uint64_t>(ax.step[i]);
+    run.y += static_cast<std::uint64_t>(ay.step[i]);
+    run.z += static_cast<std::uint64_t>(az.step[i]);
+    ++run.count;
+  }
+}
+
+void VoxelMap::close(Run& run, ViewMask seen_by, Report& report) noexcept {
+  if (run.count == 0) {
+    return;
+  }
+  const std::size_t known = hash_.size();
+  const std::uint32_t number = hash_.find_or_insert(run.key);
+  if (number == VoxelHash::kFull) {
+    report.dropped_full += run.count;
+  } else {
+    Sum& sum = sums_[number];
+    if (number == known) {
+      sum = Sum{};
+    }
+    sum.x += run.x;
+    sum.y += run.y;
+    sum.z += run.z;
+    sum.count += run.count;
+    sum.seen_by |= seen_by;
+    report.inserted += run.count;
+  }
+  run = Run{};
+}
+
+FusedCloudView VoxelMap::view() noexcept {
+  const double step_mm = static_cast<double>(config_.cell_mm) / static_cast<double>(kStepsPerCell);
+  const auto centre = [&](std::uint64_t sum, std::uint32_t count, std::int32_t cell,
+                          float origin_mm) noexcept {
+    const double inside_mm = static_cast<double>(sum) / static_cast<double>(count) * step_mm;
+    const double cell_mm = static_cast<double>(cell) * static_cast<double>(config_.cell_mm);
+    return static_cast<float>(static_cast<double>(origin_mm) + cell_mm + inside_mm);
+  };
+  centroids_.resize(size());
+  for (std::size_t i = 0; i < size(); ++i) {
+    const Sum& sum = sums_[i];
+    const CellKey key = hash_.keys()[i];
+    centroids_.set(i, {centre(sum.x, sum.count, key.x(), config_.origin_mm.x),
+                       centre(sum.y, sum.count, key.y(), config_.origin_mm.y),
+                       centre(sum.z, sum.count, key.z(), config_.origin_mm.z)});
+    count_[i] = sum.count;
+    seen_by_[i] = sum.seen_by;
+  }
+  return {centroids_.view(), count_.first(size()), seen_by_.first(size())};
+}
+
+std::uint32_t VoxelMap::find(geometry::Vec3f point) const noexcept {
+  const float x = (point.x - config_.origin_mm.x) * cells_per_mm_;
+  const float y = (point.y - config_.origin_mm.y) * cells_per_mm_;
+  const float z = (point.z - config_.origin_mm.z) * cells_per_mm_;
+  if (!(std::fabs(x) < kMaxAxis && std::fabs(y) < kMaxAxis && std::fabs(z) < kMaxAxis)) {
+    return VoxelHash::kAbsent;
+  }
+  return hash_.find(CellKey::of(static_cast<std::int32_t>(std::floor(x)),
+                                static_cast<std::int32_t>(std::floor(y)),
+                                static_cast<std::int32_t>(std::floor(z))));
+}
+
+}  // namespace dseam::cloud
