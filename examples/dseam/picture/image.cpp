@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/image.hpp"
+#include "picture/image.hpp"
 
 #include <spng.h>
 

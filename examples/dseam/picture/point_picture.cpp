@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/point_picture.hpp"
+#include "picture/point_picture.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

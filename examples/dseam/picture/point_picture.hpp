@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dseam/cloud/cloud.hpp"
-#include "report/image.hpp"
+#include "picture/image.hpp"
 
 namespace dseam::program {
 

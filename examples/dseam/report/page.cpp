@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/page.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "report/page_charts.hpp"
+#include "report/page_style.hpp"
+#include "report/page_tables.hpp"
+#include "report/seam_picture.hpp"
+#include "report/svg_chart.hpp"
+
+namespace dseam::program {
+namespace {
+
+std::string degrees(double angle_rad) {
+  return fixed(angle_rad * 180.0 / std::numbers::pi, 1) + "°";
+}
+
+std::string tile(const std::string& value, const std::string& meaning) {
+  return "<div class=\"tile\"><b>" + value + "</b><span>" + meaning + "</span></div>\n";
+}
+
+std::string verdict(const JobReport& job) {
+  return "<div class=\"verdict" + std::string(job.weld ? " good" : "") + "\"><b>" +
+         (job.weld ? "Weld" : "Refused") + "</b>" + escaped(job.reason) + "</div>\n" +
+         warnings_list(job.warnings);
+}
+
+std::string tiles(const JobReport& job) {
+  const seam::SeamReport& report = job.seam_report;
+  const seam::SeamQuality& quality = report.quality;
+  if (job.seam_base.points.empty()) {
+    return "";
+  }
+  std::string out = "<div class=\"tiles\">\n";
+  out += tile(fixed(report.length_mm, 1) + " mm", "length of the seam");
+  out += tile(fixed(100.0 * quality.coverage, 1) + " %", "of it measured");
+  out += tile(degrees(quality.largest_hole_rad), "largest hole");
+  out += tile(fixed(quality.mean_sigma_lateral_mm, 3) + " mm", "sigma across the seam");
+  out += tile(fixed(quality.mean_sigma_normal_mm, 3) + " mm", "sigma off the shell");
+  out += tile(report.joint.has_gap ? fixed(report.joint.mean_gap_mm, 2) + " mm" : "none",
+              "gap (mean)");
+  out += tile(degrees(report.joint.axes_angle_rad), "between the axes");
+  return out + "</div>\n";
+}
+
+std::string pictures(const JobReport& job) {
+  if (job.cloud_base.points.size() == 0) {
+    return "";
+  }
+  std::string out = "<h2>Scan and seam</h2>\n<div class=\"pictures\">\n";
+  const auto drawn = seam_pictures(job);
+  for (const std::size_t i : {1U, 0U, 2U}) {
+    out +=
+        "<figure>" + drawn[i].svg + "<figcaption>" + drawn[i].caption + "</figcaption></figure>\n";
+  }
+  out +=
+      "</div>\n<p class=\"soft key\"><i style=\"border-color:#00b894\"></i>seam, measured"
+      "<i style=\"border-color:#e84393;border-top-style:dashed\"></i>bridged"
+      "<i style=\"border-color:#00b894;border-top-style:dotted\"></i>behind something";
+  return out +
+         (job.path.empty() ? ""
+                           : "<i style=\"border-color:#2d3436;border-top-style:dashed\">"
+                             "</i>torch without arc") +
+         ". Blue: shell. Orange: nozzle. The ring marks the start.</p>\n";
+}
+
+}  // namespace
+
+std::string page(const JobReport& job) {
+  std::string out =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
+      "<title>dseam " +
+      escaped(job.command) + "</title><style>" + kPageStyle +
+      "</style></head><body><main>\n<header><h1>dseam " + escaped(job.command) +
+      "</h1><span class=\"soft\">" + escaped(job.input) + "</span></header>\n";
+  out += verdict(job) + tiles(job) + pictures(job) + charts(job);
+  out += budget_table(job.budget) + stage_table(job.stages) + view_table(job.views);
+  out += ring_table(job.seam_report) + robot_table(job.robot);
+  return out + "</main></body></html>\n";
+}
+
+}  // namespace dseam::program
