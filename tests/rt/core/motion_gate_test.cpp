@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dseam/rt/motion_gate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "support/allocation_counter.hpp"
+
+namespace {
+
+using dseam::rt::Fault;
+using dseam::rt::MotionGate;
+using dseam::trajectory::SetPoint;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Half a second along x with a smooth start and end, every 10 ms.
+std::vector<SetPoint> smooth_run() {
+  std::vector<SetPoint> points(51);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double u = static_cast<double>(i) / 50.0;
+    points[i].t_us = static_cast<std::uint32_t>(10'000 * i);
+    points[i].pose.p_base.x() = 20.0 * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
+  }
+  return points;
+}
+
+MotionGate gate(std::function<void(MotionGate::Config&)> set = [](auto&) {}) {
+  MotionGate::Config config;
+  set(config);
+  return MotionGate::make(config).value();
+}
+
+TEST(MotionGate, a_smooth_run_from_where_the_torch_is_passes) {
+  const auto points = smooth_run();
+  MotionGate motion = gate();
+  const dseam::test::AllocationCounter counter;
+
+  const auto verdict = motion.check_all({}, points);
+
+  EXPECT_EQ(verdict.fault, Fault::kNone);
+  EXPECT_EQ(counter.count(), 0U);
+}
+
+TEST(MotionGate, each_breach_alone_is_named_with_its_place) {
+  const struct {
+    Fault fault;
+    std::function<void(MotionGate::Config&)> limit;
+    std::function<void(SetPoint&)> spoil;  // The set point with index 20.
+  } cases[] = {
+      {Fault::kSetPointNotFinite, [](auto&) {}, [](auto& p) { p.pose.p_base.y() = kNan; }},
+      {Fault::kSetPointNotFinite, [](auto&) {}, [](auto& p) { p.pose.q_base_torch.w() = kNan; }},
+      {Fault::kSetPointNotFinite, [](auto&) {}, [](auto& p) { p.pose.q_base_torch.w() = 0.5; }},
+      {Fault::kSetPointNotFinite, [](auto&) {}, [](auto& p) { p.speed_mm_s = kNan; }},
+      {Fault::kSetPointNotFinite, [](auto&) {}, [](auto& p) { p.wire_feed_m_min = kNan; }},
+      {Fault::kSetPointNotFinite, [](auto&) {}, [](auto& p) { p.voltage_v = kNan; }},
+      {Fault::kOutsideWorkspace, [](auto&) {}, [](auto& p) { p.pose.p_base.z() = 1e20; }},
+      {Fault::kSetPointOrder, [](auto&) {}, [](auto& p) { p.t_us -= 10'000; }},
+      {Fault::kSetPointJump, [](auto&) {}, [](auto& p) { p.pose.p_base.y() = 26.0; }},
+      {Fault::kSetPointJump, [](auto&) {},
+       [](auto& p) { p.pose.q_base_torch = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()); }},
+      {Fault::kSetPointSpeed, [](auto& c) { c.max_speed_mm_s = 200.0; },
+       [](auto& p) { p.pose.p_base.y() = 2.2; }},
+      {Fault::kSetPointAcceleration, [](auto&) {}, [](auto& p) { p.pose.p_base.y() = 0.4; }},
+      {Fault::kSetPointJerk, [](auto&) {}, [](auto& p) { p.pose.p_base.y() = 0.08; }}};
+  for (const auto& c : cases) {
+    auto points = smooth_run();
+    c.spoil(points[20]);
+    MotionGate motion = gate(c.limit);
+
+    const auto verdict = motion.check_all({}, points);
+
+    EXPECT_EQ(verdict.fault, c.fault) << dseam::rt::name(c.fault);
+    EXPECT_EQ(verdict.index, 20U) << dseam::rt::name(c.fault);
+  }
+}
+
+TEST(MotionGate, a_start_that_is_not_where_the_torch_is_is_a_jump) {
+  const auto points = smooth_run();
+  dseam::torch::TorchPose aside;
+  aside.p_base.x() = 1.1;
+  dseam::torch::TorchPose turned;
+  turned.q_base_torch = Eigen::AngleAxisd(0.06, Eigen::Vector3d::UnitZ());
+  MotionGate motion = gate();
+
+  EXPECT_EQ(motion.check_all(aside, points).fault, Fault::kSetPointJump);
+  EXPECT_EQ(motion.check_all(turned, points).fault, Fault::kSetPointJump);
+  EXPECT_EQ(motion.check_all(turned, points).index, 0U);
+}
+
+TEST(MotionGate, limits_that_are_none_are_refused) {
+  const auto refused = [](auto set) {
+    MotionGate::Config config;
+    set(config);
+    return !MotionGate::make(config).ok();
+  };
+
+  EXPECT_TRUE(refused([](auto& c) { c.max_start_mm = 0.0; }));
+  EXPECT_TRUE(refused([](auto& c) { c.max_step_rad = kNan; }));
+  EXPECT_TRUE(refused([](auto& c) { c.max_speed_mm_s = -1.0; }));
+  EXPECT_TRUE(refused([](auto& c) { c.max_jerk_mm_s3 = INFINITY; }));
+  EXPECT_TRUE(refused([](auto& c) { c.workspace.low_mm.y() = 1e9; }));
+}
+
+}  // namespace
