@@ -31,6 +31,9 @@ PathRates largest_rates(const PathSpan& span, double u0, double u1) noexcept {
     most.turn = std::max(most.turn, r.turn);
     most.turn_rate = std::max(most.turn_rate, r.turn_rate);
   }
+  // A turn between two samples exceeds both by no more than its own rate allows.
+  const double half_gap_mm = 0.5 * (span.s_at(u1) - span.s_at(u0)) / kSamplesPerCell;
+  most.turn += half_gap_mm * most.turn_rate;
   return {most.tangent * kSampleMargin, most.curvature * kSampleMargin, most.third * kSampleMargin,
           most.turn * kSampleMargin, most.turn_rate * kSampleMargin};
 }
