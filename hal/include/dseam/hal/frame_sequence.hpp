@@ -32,6 +32,11 @@ class FrameSequence {
     return {sequence_, static_cast<std::uint32_t>(ahead - 1)};
   }
 
+  [[nodiscard]] constexpr std::uint64_t current() const noexcept { return sequence_; }
+  /// The device turned out to count further than was said.
+  constexpr void widen(std::uint64_t last) noexcept {
+    period_ = last - first_ + 1 > period_ ? last - first_ + 1 : period_;
+  }
   /// After a reconnect the device counts from anywhere; the sequence goes on with no gap.
   constexpr void restart() noexcept { any_ = false; }
 

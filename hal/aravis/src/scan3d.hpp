@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "dseam/base/result.hpp"
+#include "dseam/depth/depth_model.hpp"
+#include "glib_ptr.hpp"
+
+namespace dseam::hal::aravis {
+
+/// Reads what the device says of its depth data; `problem` gets the reason when that is too little.
+///
+/// Source:  GenICam SFNC 2.7, chapter 3D Scan Control.
+/// Errors:  kUnsupported: the pixel format is no depth format, or its scale is not described and
+///          not assumed either. kIo: the device did not answer.
+Result<depth::DepthModel> read_depth_model(ArvCamera* camera,
+                                           const std::optional<depth::DepthModel>& assumed,
+                                           std::string& problem);
+
+}  // namespace dseam::hal::aravis

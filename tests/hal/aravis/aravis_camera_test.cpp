@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dseam/hal/aravis/aravis_camera.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <thread>
+
+#include "hal/aravis/fake_gige_camera.hpp"
+
+namespace dseam::hal::aravis {
+namespace {
+
+using namespace std::chrono_literals;
+using test::FakeGigeCamera;
+using test::FakeScan3d;
+
+class AravisCameraTest : public ::testing::Test {
+ protected:
+  AravisCameraTest() {
+    config_.id = FakeGigeCamera::serial();
+    config_.pixel_format = "Depth";
+    config_.packet_bytes = 8192;
+  }
+  std::unique_ptr<AravisCamera> open() {
+    auto camera = AravisCamera::open(config_, problem_);
+    EXPECT_TRUE(camera.ok()) << problem_;
+    return camera.ok() ? std::move(camera.value()) : nullptr;
+  }
+  Errc refusal() {
+    const auto camera = AravisCamera::open(config_, problem_);
+    EXPECT_FALSE(camera.ok());
+    return camera.ok() ? Errc::kIo : camera.error();
+  }
+  static bool wait_for_frame(DepthCamera& camera) {
+    bool came = false;
+    for (int i = 0; i < 200 && !came; ++i) {
+      came = camera.next(50ms).ok();
+    }
+    return came;
+  }
+
+  AravisConfig config_;
+  std::string problem_;
+};
+
+TEST_F(AravisCameraTest, the_model_is_read_axis_by_axis_from_the_device) {
+  const FakeGigeCamera device;
+
+  const auto camera = open();
+
+  const depth::DepthModel& model = camera->model();
+  EXPECT_EQ(model.format, depth::SampleFormat::kC16);
+  EXPECT_EQ(model.geometry, depth::Geometry::kProjected);
+  EXPECT_EQ(model.intrinsics.width, 320U);
+  EXPECT_DOUBLE_EQ(model.intrinsics.fx, 512.0);
+  EXPECT_DOUBLE_EQ(model.intrinsics.cx, 159.5);
+  EXPECT_DOUBLE_EQ(model.scale[0], 0.1);
+  EXPECT_DOUBLE_EQ(model.offset[1], -10.0);
+  EXPECT_DOUBLE_EQ(model.scale[2], 0.05);
+  EXPECT_DOUBLE_EQ(model.offset[2], 100.0);
+  EXPECT_TRUE(model.has_invalid_value);
+}
+
+TEST_F(AravisCameraTest, a_calibrated_float_cloud_in_metres_is_understood) {
+  const FakeGigeCamera device({.pixel_format = ARV_PIXEL_FORMAT_COORD3D_ABC_32F,
+                               .output_mode = "CalibratedABC_Grid",
+                               .distance_unit = "Meter"});
+
+  const auto camera = open();
+
+  EXPECT_EQ(camera->model().format, depth::SampleFormat::kABC32f);
+  EXPECT_EQ(camera->model().geometry, depth::Geometry::kCalibrated);
+  EXPECT_DOUBLE_EQ(camera->model().mm_per_unit, 1000.0);
+}
+
+TEST_F(AravisCameraTest, every_byte_arrives_in_the_camera_s_own_buffers) {
+  const FakeGigeCamera device;
+  const auto camera = open();
+  ASSERT_TRUE(camera->start(FrameMode::kEvery).ok());
+
+  std::set<const std::byte*> places;
+  for (int n = 0; n < 30; ++n) {
+    const auto lease = camera->next(2s);
+    ASSERT_TRUE(lease.ok());
+    const auto bytes = lease.value().frame().depth;
+    places.insert(bytes.data());
+    const auto first = std::to_integer<unsigned>(bytes[1]);
+    ASSERT_EQ(bytes.size(), 320U * 240U * 2U);
+    for (std::size_t i = 0; i < bytes.size(); i += 2) {
+      ASSERT_EQ(bytes[i], std::byte{7});
+      ASSERT_EQ(std::to_integer<unsigned>(bytes[i + 1]), (first + i / 2) % 256U);
+    }
+  }
+
+  EXPECT_LE(places.size(), config_.num_buffers);  // Never copied: the buffers that were lent.
+}
+
+TEST_F(AravisCameraTest, a_camera_that_is_not_there_is_named_with_what_is) {
+  const FakeGigeCamera device;
+  config_.id = "NOT-THERE";
+
+  EXPECT_EQ(refusal(), Errc::kNotFound);
+
+  EXPECT_NE(problem_.find("NOT-THERE"), std::string::npos);
+  EXPECT_NE(problem_.find(FakeGigeCamera::serial()), std::string::npos) << problem_;
+}
+
+TEST_F(AravisCameraTest, a_format_that_it_has_not_or_that_is_no_depth_is_refused) {
+  const FakeGigeCamera device;
+
+  config_.pixel_format = "Coord3D_ABC16";
+  EXPECT_EQ(refusal(), Errc::kUnsupported);
+  EXPECT_NE(problem_.find("Coord3D_ABC16"), std::string::npos) << problem_;
+
+  config_.pixel_format = "Mono8";
+  EXPECT_EQ(refusal(), Errc::kUnsupported);
+  EXPECT_NE(problem_.find("no depth format"), std::string::npos) << problem_;
+}
+
+TEST_F(AravisCameraTest, without_a_3d_description_it_asks_for_one) {
+  const FakeGigeCamera device({.described = false});
+
+  EXPECT_EQ(refusal(), Errc::kUnsupported);
+  EXPECT_NE(problem_.find("Scan3d"), std::string::npos) << problem_;
+
+  config_.assumed_model = depth::DepthModel{.intrinsics = {.fx = 500.0, .fy = 500.0}};
+  EXPECT_EQ(open()->model().intrinsics.width, 320U);
+}
+
+TEST_F(AravisCameraTest, a_description_that_cannot_be_decoded_is_refused) {
+  const FakeGigeCamera device({.focal_length_px = 0.0});
+
+  EXPECT_EQ(refusal(), Errc::kUnsupported);
+  EXPECT_NE(problem_.find("focal length"), std::string::npos) << problem_;
+}
+
+TEST_F(AravisCameraTest, a_camera_in_use_is_said_to_be_in_use) {
+  const FakeGigeCamera device;
+  const auto owner = open();
+
+  EXPECT_EQ(refusal(), Errc::kUnavailable);
+  EXPECT_NE(problem_.find("another program"), std::string::npos) << problem_;
+}
+
+TEST_F(AravisCameraTest, frames_with_lost_packets_are_counted_and_never_delivered) {
+  const FakeGigeCamera device({}, 0.01);
+  const auto camera = open();
+  ASSERT_TRUE(camera->start(FrameMode::kEvery).ok());
+
+  for (int i = 0; i < 40; ++i) {
+    const auto lease = camera->next(50ms);
+    if (lease.ok()) {
+      const auto bytes = lease.value().frame().depth;
+      ASSERT_EQ(bytes.back(),
+                std::byte(std::to_integer<unsigned>(bytes[1]) + bytes.size() / 2 - 1));
+    }
+  }
+
+  EXPECT_GT(camera->health().damaged, 0U);
+}
+
+TEST_F(AravisCameraTest, a_frame_of_another_size_mid_stream_is_damaged) {
+  FakeGigeCamera device;
+  const auto camera = open();
+  ASSERT_TRUE(camera->start(FrameMode::kEvery).ok());
+  ASSERT_TRUE(wait_for_frame(*camera));
+
+  device.write_register(ARV_FAKE_CAMERA_REGISTER_HEIGHT, 200);
+  for (int i = 0; i < 20; ++i) {
+    const auto lease = camera->next(30ms);
+    ASSERT_TRUE(!lease.ok() || lease.value().frame().depth.size() == 320U * 240U * 2U);
+  }
+
+  EXPECT_GT(camera->health().damaged, 0U);
+}
+
+TEST_F(AravisCameraTest, after_a_reconnect_the_settings_are_applied_again) {
+  FakeGigeCamera device;
+  config_.frame_rate_hz = 40.0;
+  const auto camera = open();
+  ASSERT_TRUE(camera->start(FrameMode::kEvery).ok());
+  ASSERT_TRUE(wait_for_frame(*camera));
+
+  device.unplug();
+  std::this_thread::sleep_for(700ms);
+  EXPECT_EQ(camera->state(), AravisState::kLost);
+  device.plug_in();  // With another frame rate and, as the control program left it, Mono8.
+  device.write_register(ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT, ARV_PIXEL_FORMAT_MONO_8);
+
+  ASSERT_TRUE(wait_for_frame(*camera));
+  EXPECT_EQ(camera->health().reconnects, 1U);
+  EXPECT_EQ(camera->state(), AravisState::kStreaming);
+}
+
+TEST_F(AravisCameraTest, stop_returns_at_once_also_while_the_device_is_gone) {
+  FakeGigeCamera device;
+  const auto camera = open();
+  ASSERT_TRUE(camera->start(FrameMode::kEvery).ok());
+  ASSERT_TRUE(wait_for_frame(*camera));
+  device.unplug();
+
+  for (const auto gone_for : {0ms, 700ms}) {
+    std::this_thread::sleep_for(gone_for);
+    const auto begin = std::chrono::steady_clock::now();
+    camera->stop();
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 100ms);
+    (void)camera->start(FrameMode::kEvery);
+  }
+}
+
+TEST_F(AravisCameraTest, the_socket_buffer_is_read_back_and_too_small_a_one_is_noted) {
+  const FakeGigeCamera device;
+  config_.socket_buffer_bytes = std::size_t{1} << 30U;
+  const auto camera = open();
+  ASSERT_TRUE(camera->start(FrameMode::kEvery).ok());
+  ASSERT_TRUE(wait_for_frame(*camera));
+  std::this_thread::sleep_for(100ms);
+
+  const AravisGrant grant = camera->grant();
+
+  EXPECT_GT(grant.socket_buffer_bytes, 0U);
+  EXPECT_TRUE(std::any_of(grant.notes.begin(), grant.notes.end(), [](const std::string& note) {
+    return note.find("net.core.rmem_max") != note.npos;
+  }));
+}
+
+TEST_F(AravisCameraTest, the_packet_size_is_negotiated_and_proven_by_a_frame) {
+  const FakeGigeCamera device;
+  config_.packet_bytes = 0;
+  const auto camera = open();
+  ASSERT_TRUE(camera->start(FrameMode::kEvery).ok());
+
+  EXPECT_TRUE(wait_for_frame(*camera));
+  EXPECT_GE(camera->grant().packet_bytes, 1400U);
+}
+
+TEST_F(AravisCameraTest, the_list_has_the_camera_and_why_it_cannot_be_opened) {
+  const FakeGigeCamera device;
+  const auto owner = open();
+
+  const auto cameras = list_cameras();
+
+  const auto found = std::find_if(cameras.begin(), cameras.end(), [](const CameraInfo& camera) {
+    return camera.id.find(FakeGigeCamera::serial()) != camera.id.npos;
+  });
+  ASSERT_NE(found, cameras.end());
+  EXPECT_EQ(found->backend, "aravis");
+  EXPECT_NE(found->why_not.find("another program"), std::string::npos) << found->why_not;
+}
+
+}  // namespace
+}  // namespace dseam::hal::aravis

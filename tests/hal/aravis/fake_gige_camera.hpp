@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <arv.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace dseam::test {
+
+/// Moves this process into a network of its own, so that tests that use GigE Vision's one port run
+/// beside each other. Where that is not permitted, the computer's loopback is used.
+void enter_private_network();
+
+/// What the fake camera's description says of its 3D data.
+struct FakeScan3d {
+  std::uint32_t width = 320;
+  std::uint32_t height = 240;
+  std::uint32_t pixel_format = ARV_PIXEL_FORMAT_COORD3D_C_16;
+  bool described = true;  ///< False: a camera without any Scan3d feature.
+  std::string output_mode = "ProjectedC";
+  std::string distance_unit = "Millimeter";
+  double focal_length_px = 512.0;
+  double scale_c = 0.05;
+  double offset_c = 100.0;
+  double scale_ab = 0.1;
+  double offset_ab = -10.0;
+  double frame_rate_hz = 50.0;
+};
+
+/// A real GigE Vision device on the loopback, made of Aravis' fake and a description of our own.
+/// Pixel i of frame n has the byte (i + n) modulo 256 as its high byte, and 7 as its low one.
+class FakeGigeCamera {
+ public:
+  explicit FakeGigeCamera(const FakeScan3d& scan = {}, double lost_packet_ratio = 0.0);
+  ~FakeGigeCamera();
+  FakeGigeCamera(const FakeGigeCamera&) = delete;
+  FakeGigeCamera& operator=(const FakeGigeCamera&) = delete;
+
+  void unplug();
+  void plug_in();
+  void write_register(std::uint32_t address, std::uint32_t value);
+  [[nodiscard]] static const char* serial() { return "DSEAM3D"; }
+
+ private:
+  FakeScan3d scan_;
+  double lost_packet_ratio_;
+  std::filesystem::path description_;
+  ArvGvFakeCamera* camera_ = nullptr;
+};
+
+/// The description that such a camera serves.
+[[nodiscard]] std::string genicam_description(const FakeScan3d& scan);
+
+}  // namespace dseam::test
