@@ -23,7 +23,8 @@ ArcInputs all_well() {
   in.confidence = 0.9;
   in.bus = BusState::kErrorActive;
   in.speed_mm_s = 8.0;
-  in.planned_mm_s = 8.0;
+  in.planned_low_mm_s = 8.0;
+  in.planned_high_mm_s = 8.0;
   return in;
 }
 
@@ -37,10 +38,10 @@ const std::vector<Loss>& losses() {
   static const std::vector<Loss> all = {
       {"disarmed", [](ArcInputs& in) { in.armed = false; }, Fault::kNotArmed},
       {"old data", [](ArcInputs& in) { in.data_age_ns = 20'000'001; }, Fault::kDataStale},
+      {"old pose", [](ArcInputs& in) { in.pose_age_ns = 60'000'001; }, Fault::kDataStale},
       {"doubt", [](ArcInputs& in) { in.confidence = 0.49; }, Fault::kConfidenceLow},
       {"doubt nan", [](ArcInputs& in) { in.confidence = kNan; }, Fault::kConfidenceLow},
       {"stream", [](ArcInputs& in) { in.stream_age_ns = 100'000'001; }, Fault::kStreamStopped},
-      {"warning", [](ArcInputs& in) { in.bus = BusState::kErrorWarning; }, Fault::kBusNotActive},
       {"passive", [](ArcInputs& in) { in.bus = BusState::kErrorPassive; }, Fault::kBusNotActive},
       {"bus off", [](ArcInputs& in) { in.bus = BusState::kBusOff; }, Fault::kBusNotActive},
       {"down", [](ArcInputs& in) { in.bus = BusState::kDown; }, Fault::kBusNotActive},
@@ -94,6 +95,8 @@ TEST(ArcGate, the_limits_themselves_still_hold) {
   const ArcGate gate = ArcGate::make({}).value();
   ArcInputs in = all_well();
   in.data_age_ns = 20'000'000;
+  in.pose_age_ns = 60'000'000;
+  in.bus = BusState::kErrorWarning;
   in.confidence = 0.5;
   in.stream_age_ns = 100'000'000;
   in.tracking_mm = 5.0;
@@ -108,7 +111,8 @@ TEST(ArcGate, the_limits_themselves_still_hold) {
 TEST(ArcGate, a_fast_weld_has_a_wider_window) {
   const ArcGate gate = ArcGate::make({}).value();
   ArcInputs in = all_well();
-  in.planned_mm_s = 100.0;
+  in.planned_low_mm_s = 100.0;
+  in.planned_high_mm_s = 100.0;
   in.speed_mm_s = 129.0;
 
   EXPECT_EQ(gate.check(in), Fault::kNone);
@@ -129,6 +133,7 @@ TEST(ArcGate, limits_that_are_none_are_refused) {
   EXPECT_TRUE(refused([](auto& c) { c.min_confidence = kNan; }));
   EXPECT_TRUE(refused([](auto& c) { c.min_confidence = 1.1; }));
   EXPECT_TRUE(refused([](auto& c) { c.max_data_age_ns = 0; }));
+  EXPECT_TRUE(refused([](auto& c) { c.max_pose_age_ns = 0; }));
   EXPECT_TRUE(refused([](auto& c) { c.max_stream_age_ns = -1; }));
   EXPECT_TRUE(refused([](auto& c) { c.max_standing_ns = 0; }));
   EXPECT_TRUE(refused([](auto& c) { c.workspace.low_mm.x() = 4000.0; }));

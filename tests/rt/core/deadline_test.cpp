@@ -11,39 +11,42 @@ using dseam::rt::Heartbeat;
 using dseam::rt::Histogram;
 using dseam::rt::OverrunMonitor;
 
+bool trips_after(OverrunMonitor& monitor, bool overran) {
+  monitor.add(overran);
+  return monitor.tripped();
+}
+
 TEST(OverrunMonitor, bears_one_and_trips_on_too_many_of_the_last) {
   OverrunMonitor monitor(3, 10);
 
-  EXPECT_FALSE(monitor.add(true));
-  EXPECT_TRUE(monitor.pending());
-  EXPECT_FALSE(monitor.add(false));
-  EXPECT_FALSE(monitor.pending());
-  EXPECT_FALSE(monitor.add(true));
-  EXPECT_TRUE(monitor.add(true));
+  EXPECT_FALSE(trips_after(monitor, true));
+  EXPECT_FALSE(trips_after(monitor, false));
+  EXPECT_FALSE(trips_after(monitor, true));
+  EXPECT_TRUE(trips_after(monitor, true));
   EXPECT_EQ(monitor.total(), 3U);
 }
 
 TEST(OverrunMonitor, forgets_what_lies_before_its_window) {
   OverrunMonitor monitor(2, 4);
-  (void)monitor.add(true);
+  monitor.add(true);
   for (int i = 0; i < 3; ++i) {
-    EXPECT_FALSE(monitor.add(false));
+    EXPECT_FALSE(trips_after(monitor, false));
   }
 
-  EXPECT_FALSE(monitor.add(true));
-  EXPECT_TRUE(monitor.add(true));
+  EXPECT_FALSE(trips_after(monitor, true));
+  EXPECT_TRUE(trips_after(monitor, true));
   monitor.clear();
-  EXPECT_FALSE(monitor.add(true));
+  EXPECT_FALSE(trips_after(monitor, true));
 }
 
 TEST(OverrunMonitor, the_widest_window_is_sixty_four) {
   OverrunMonitor monitor(2, 64);
-  (void)monitor.add(true);
+  monitor.add(true);
   for (int i = 0; i < 62; ++i) {
-    EXPECT_FALSE(monitor.add(false));
+    EXPECT_FALSE(trips_after(monitor, false));
   }
 
-  EXPECT_TRUE(monitor.add(true));
+  EXPECT_TRUE(trips_after(monitor, true));
 }
 
 TEST(Heartbeat, tells_how_long_a_thread_has_been_silent) {

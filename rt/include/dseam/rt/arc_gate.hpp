@@ -27,13 +27,15 @@ struct Workspace {
 /// What the arc gate looks at, taken in one cycle.
 struct ArcInputs {
   bool armed = false;
-  std::int64_t data_age_ns = 0;    ///< Of the newest valid report from the robot.
+  std::int64_t data_age_ns = 0;    ///< Of the newest valid status from the robot,
+  std::int64_t pose_age_ns = 0;    ///< and of the newest pose.
   double confidence = 0.0;         ///< Of the seam, 0 to 1.
   std::int64_t stream_age_ns = 0;  ///< Since the robot last got further along the set points.
   hal::BusState bus = hal::BusState::kDown;
-  double tracking_mm = 0.0;   ///< From the torch to where it was sent.
-  double speed_mm_s = 0.0;    ///< Of the torch,
-  double planned_mm_s = 0.0;  ///< and what was planned for here.
+  double tracking_mm = 0.0;       ///< From the torch to where it was sent.
+  double speed_mm_s = 0.0;        ///< Of the torch,
+  double planned_low_mm_s = 0.0;  ///< and what was planned around here.
+  double planned_high_mm_s = 0.0;
   Eigen::Vector3d p_base = Eigen::Vector3d::Zero();
   double corridor_mm = 0.0;  ///< From the torch to the nearest place on the planned path.
   bool overrun = false;
@@ -48,6 +50,7 @@ class ArcGate {
  public:
   struct Config {
     std::int64_t max_data_age_ns = 20'000'000;
+    std::int64_t max_pose_age_ns = 60'000'000;
     double min_confidence = 0.5;
     std::int64_t max_stream_age_ns = 100'000'000;
     double max_tracking_mm = 5.0;

@@ -16,15 +16,15 @@ class OverrunMonitor {
   OverrunMonitor(unsigned most, unsigned window) noexcept
       : most_(most), mask_(window >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << window) - 1) {}
 
-  /// True when there were too many.
-  bool add(bool overran) noexcept {
+  void add(bool overran) noexcept {
     recent_ = ((recent_ << 1U) | (overran ? 1U : 0U)) & mask_;
     total_ += overran ? 1 : 0;
+  }
+  /// There were too many.
+  [[nodiscard]] bool tripped() const noexcept {
     return static_cast<unsigned>(std::popcount(recent_)) >= most_;
   }
   void clear() noexcept { recent_ = 0; }
-  /// Whether the last cycle overran.
-  [[nodiscard]] bool pending() const noexcept { return (recent_ & 1U) != 0; }
   [[nodiscard]] std::uint64_t total() const noexcept { return total_; }
 
  private:
