@@ -10,8 +10,15 @@
 #include "dseam/base/result.hpp"
 #include "dseam/cloud/cloud.hpp"
 #include "dseam/depth/depth_image.hpp"
+#include "dseam/seam/cell_map.hpp"
+#include "dseam/seam/coverage.hpp"
+#include "dseam/seam/curve_builder.hpp"
+#include "dseam/seam/edge_curve.hpp"
+#include "dseam/seam/joint_fit.hpp"
+#include "dseam/seam/ring_finder.hpp"
 #include "dseam/seam/seam_curve.hpp"
 #include "dseam/seam/seam_report.hpp"
+#include "dseam/seam/surface_finder.hpp"
 #include "dseam/splice/spliced_view.hpp"
 
 namespace dseam::pipeline {
@@ -27,10 +34,10 @@ struct RegionOfInterest {
 /// Shape:   `views[i]` is the pose of `frames[i]`; both may be empty.
 struct SeamInput {
   cloud::FusedCloudView cloud_base;
-  std::span<const depth::DepthImage> frames;
-  std::span<const splice::SplicedView> views;
-  std::optional<RegionOfInterest> region;
-  std::optional<double> expected_radius_mm;
+  std::span<const depth::DepthImage> frames{};
+  std::span<const splice::SplicedView> views{};
+  std::optional<RegionOfInterest> region{};
+  std::optional<double> expected_radius_mm{};
 };
 
 /// From a fused cloud to the one closed seam in it, or to the reason why there is none.
@@ -64,11 +71,30 @@ class SeamChain {
   seam::SeamReport run(const SeamInput& in, Buffer<seam::SeamPoint>& out) noexcept;
 
  private:
-  SeamChain(const Config& config, const Capacity& capacity) noexcept
-      : config_(config), capacity_(capacity) {}
+  struct Workspace {
+    seam::RingCoverage coverage;
+    seam::CurveBuilder builder;
+    seam::EdgeCurve edge;
+  };
+
+  SeamChain(const Config& config, const Capacity& capacity, Arena& arena) noexcept;
+
+  bool find_joint(const SeamInput& in, seam::SeamReport& report, seam::Joint& joint) noexcept;
+  bool fit_joint(const SeamInput& in, const seam::Joint& joint, seam::SeamReport& report) noexcept;
+  bool find_edge(const SeamInput& in, seam::SeamReport& report) noexcept;
+  void build_curve(const SeamInput& in, seam::SeamReport& report,
+                   Buffer<seam::SeamPoint>& out) noexcept;
 
   Config config_;
-  Capacity capacity_;
+  seam::CellMap cells_;
+  seam::SurfaceFinder surfaces_;
+  seam::RingFinder rings_;
+  seam::JointFit fit_;
+  std::span<Workspace> work_;
+  std::span<float> scratch_;
+  const seam::EdgeCurve* edge_ = nullptr;
+  double tolerance_mm_ = 1.0;
+  double cell_mm_ = 4.0;
 };
 
 }  // namespace dseam::pipeline

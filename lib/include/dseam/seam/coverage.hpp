@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "dseam/seam/edge_curve.hpp"
+#include "dseam/seam/joint_fit.hpp"
+#include "dseam/seam/seam_report.hpp"
+
+namespace dseam::seam {
+
+/// Which angles about the nozzle were measured.
+///
+/// An angle is measured when trusted points of both surfaces lie there within 3 mm of the seam,
+/// plus the joint's own dead band: what its median angle lacks.
+class RingCoverage {
+ public:
+  static constexpr std::size_t kMaxBins = 360;
+
+  /// `edge` is nullptr without a gap.
+  void run(const JointFit& fit, const EdgeCurve* edge, double spacing_mm) noexcept;
+  [[nodiscard]] bool measured_at(double phi_rad) const noexcept;
+  [[nodiscard]] double dead_band_mm() const noexcept { return dead_band_mm_; }
+  /// Width of the hole around an angle; 0 where it was measured.
+  [[nodiscard]] double hole_at(double phi_rad) const noexcept;
+  /// Fills coverage, largest hole and the list of holes.
+  void report(bool counter_clockwise, SeamReport& report) const noexcept;
+
+ private:
+  using Distances = std::array<float, kMaxBins>;
+  [[nodiscard]] std::size_t bin_of(double phi_rad) const noexcept;
+  double median_of(const Distances& nearest) noexcept;
+
+  std::size_t num_bins_ = 0;
+  std::array<bool, kMaxBins> measured_{};
+  Distances shell_{};
+  Distances nozzle_{};
+  Distances sorted_{};
+  double dead_band_mm_ = 0.0;
+};
+
+}  // namespace dseam::seam

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "dseam/base/buffer.hpp"
+#include "dseam/seam/coverage.hpp"
+#include "dseam/seam/edge_curve.hpp"
+#include "dseam/seam/joint_fit.hpp"
+#include "dseam/seam/seam_curve.hpp"
+
+namespace dseam::seam {
+
+/// What is known beyond the fit and enters the predicted errors.
+struct ErrorSources {
+  double pose_sigma_mm = 0.0;      ///< Of the views' poses against each other, at the seam.
+  double hand_eye_sigma_mm = 0.0;  ///< 0: not known, left out.
+};
+
+/// Walks once round a joint and writes the reference curve as evenly spaced points.
+///
+/// Confidence: high: measured and both sigmas at most 0.1 mm. Medium: measured and at most 0.3 mm,
+/// or in a hole of at most 10 degrees and at most 0.1 mm. Low: at most 1 mm. None: the rest.
+///
+/// Time:    O(points), a few evaluations of the fitted surfaces each.
+class CurveBuilder {
+ public:
+  struct Config {
+    ReferenceCurve reference = ReferenceCurve::kShellEdge;
+    double point_spacing_mm = 0.5;
+    double start_angle_rad = 0.0;
+    bool counter_clockwise = true;
+  };
+  struct Report {
+    bool placed = false;  ///< False: the surfaces do not meet all round, or the output is full.
+    bool full = false;
+    double length_mm = 0.0;
+    double closure_mm = 0.0;
+  };
+
+  /// `edge` is nullptr without a gap.
+  Report run(const Config& config, const JointFit& fit, const EdgeCurve* edge,
+             const RingCoverage& coverage, const ErrorSources& errors,
+             Buffer<SeamPoint>& out) noexcept;
+
+ private:
+  static constexpr std::size_t kStations = 1024;
+
+  [[nodiscard]] std::optional<Eigen::Vector3d> place(double phi_rad,
+                                                     const Eigen::Vector3d& guess) const noexcept;
+  [[nodiscard]] double angle_of(double turn_rad) const noexcept;
+  [[nodiscard]] double offset_at(double phi_rad) const noexcept;
+  bool measure_length() noexcept;
+  SeamPoint point_at(double s_mm, const RingCoverage& coverage,
+                     const ErrorSources& errors) const noexcept;
+  void estimate_errors(SeamPoint& point, double phi_rad, const ErrorSources& errors) const noexcept;
+
+  Config config_;
+  const JointFit* fit_ = nullptr;
+  const EdgeCurve* edge_ = nullptr;
+  std::array<Eigen::Vector3d, kStations> stations_;
+  std::array<double, kStations + 1> lengths_{};
+};
+
+}  // namespace dseam::seam

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace dseam::seam {
+
+/// Between two measurements, of which one is on the shell and the other is past its edge: the
+/// edge's distance from the nozzle lies between the two numbers.
+struct EdgeInterval {
+  double phi_rad = 0.0;
+  double low_mm = 0.0;   ///< Past the edge: something was seen behind the shell here.
+  double high_mm = 0.0;  ///< Still on the shell.
+};
+
+/// The shell's edge at a gap: its distance from the nozzle as a periodic function of the angle.
+///
+/// Fitted so that it passes through the intervals. Every interval is true, however wide a pixel's
+/// footprint or a dropped pixel made it; so there is no half-pixel bias to correct, and many wide
+/// intervals leave a narrow way.
+///
+/// Source:  interval regression with a squared hinge loss.
+class EdgeCurve {
+ public:
+  static constexpr std::size_t kMaxHarmonics = 6;
+  static constexpr std::size_t kMaxOrder = 2 * kMaxHarmonics + 1;
+  using Vector = std::array<double, kMaxOrder>;
+
+  /// False when the intervals are too few, or lie at too few angles.
+  bool fit(std::span<const EdgeInterval> intervals) noexcept;
+
+  [[nodiscard]] double at(double phi_rad) const noexcept;
+  [[nodiscard]] double variance_at(double phi_rad) const noexcept;
+  [[nodiscard]] double scatter_mm() const noexcept { return scatter_mm_; }
+  [[nodiscard]] std::size_t harmonics() const noexcept { return (order_ - 1) / 2; }
+
+ private:
+  using Storage = std::array<double, kMaxOrder * kMaxOrder>;
+
+  [[nodiscard]] double value_at(const Vector& basis) const noexcept;
+  double improve(std::span<const EdgeInterval> intervals, double cut_mm, bool first) noexcept;
+  double solve(std::span<const EdgeInterval> intervals, std::size_t order) noexcept;
+  void estimate_covariance(std::span<const EdgeInterval> intervals) noexcept;
+
+  std::size_t order_ = 1;
+  Vector coefficients_{};
+  Storage normal_{};  // Its Cholesky factor after improve().
+  Storage meat_{};
+  double scatter_mm_ = 0.0;
+};
+
+}  // namespace dseam::seam

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "dseam/seam/coverage.hpp"
+#include "dseam/seam/joint_fit.hpp"
+#include "dseam/seam/seam_report.hpp"
+
+namespace dseam::seam {
+
+/// What a seam must reach to be welded.
+struct QualityLimits {
+  double min_coverage = 0.80;
+  double max_hole_rad = 1.0471975511965976;  ///< 60 degrees.
+  double max_sigma_mm = 1.0;
+};
+
+/// Radii, angle and offset of the axes, and what the fit used.
+void describe_joint(const JointFit& fit, JointReport& report) noexcept;
+/// Residuals of the points within 6 mm of the joint: those of the shell are normal ones, those of
+/// the nozzle lateral.
+void describe_residuals(const JointFit& fit, std::span<float> scratch,
+                        SeamQuality& quality) noexcept;
+/// Coverage, sigmas and confidences of the finished curve.
+void describe_curve(std::span<const SeamPoint> points, SeamReport& report) noexcept;
+/// kNone, or the first limit that is not kept.
+[[nodiscard]] Refusal verdict_of(const SeamReport& report, const QualityLimits& limits) noexcept;
+
+}  // namespace dseam::seam

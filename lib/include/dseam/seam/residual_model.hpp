@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "dseam/base/arena.hpp"
+#include "dseam/seam/dense_solver.hpp"
+#include "dseam/seam/ring_finder.hpp"
+
+namespace dseam::seam {
+
+/// How far the real surface lies off its model near a joint, as a smooth function of the place.
+///
+/// Columns: the model's own parameters, the surface's ovality about its own axis, then harmonics
+/// of the angle about the nozzle, constant and linear in the distance from the joint. How many of
+/// them the points justify is decided by the Bayesian information criterion on patch means, which
+/// unlike points are nearly independent of each other.
+///
+/// Memory:  `bytes()` from the arena.
+class ResidualModel {
+ public:
+  static constexpr std::size_t kOvalColumns = 4;
+  static constexpr std::size_t kMaxHarmonics = 6;
+  static constexpr std::size_t kHarmonicColumns = 2 * kMaxHarmonics + 1;
+  static constexpr std::size_t kColumns =
+      kMaxSurfaceParameters + kOvalColumns + 2 * kHarmonicColumns;
+  using Row = std::array<double, kColumns>;
+
+  /// The mean of the points in one patch: where it is and how far off the model.
+  struct Patch {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    double phi_rad = 0.0;
+    double away = 0.0;  ///< Distance from the joint over the band's width, 0 at the joint.
+    double distance_mm = 0.0;
+    double weight = 0.0;
+  };
+
+  [[nodiscard]] static constexpr std::size_t bytes() noexcept {
+    return 2 * Arena::bytes<double>(kColumns * kColumns) + Arena::bytes<Fitted>(1);
+  }
+  ResidualModel() = default;
+  explicit ResidualModel(Arena& arena) noexcept
+      : normal_(arena.take<double>(kColumns * kColumns)),
+        factor_(arena.take<double>(kColumns * kColumns)),
+        fitted_(arena.take<Fitted>(1)) {}
+
+  /// Forgets everything: the residual is 0 until fit().
+  void reset(const Surface& surface) noexcept;
+  /// Chooses the order and fits; false where there are too few patches for the model itself.
+  bool fit(std::span<const Patch> patches) noexcept;
+
+  [[nodiscard]] double at(const Eigen::Vector3d& p, double phi_rad, double away) const noexcept;
+  /// Variance of at(), from the scatter of the patches.
+  [[nodiscard]] double variance_at(const Eigen::Vector3d& p, double phi_rad,
+                                   double away) const noexcept;
+  /// The highest harmonic in use; -1: the model alone.
+  [[nodiscard]] int harmonics() const noexcept { return fitted_[0].harmonics; }
+  /// Scatter of the patches about model and residual.
+  [[nodiscard]] double scatter_mm() const noexcept { return fitted_[0].scatter_mm; }
+  /// Multiplies all variances: what neighbouring patches have in common makes them count less.
+  void inflate(double factor) noexcept { fitted_[0].inflation = factor; }
+
+ private:
+  struct Order {
+    bool oval = false;
+    int constant = -1;  // Harmonics; -1: not even a constant.
+    int linear = -1;
+  };
+  struct Columns {
+    std::array<std::size_t, kColumns> index{};
+    std::size_t count = 0;
+  };
+
+  struct Fitted {
+    Surface surface;
+    Row right{};
+    Row solution{};
+    Columns columns;
+    double scatter_mm = 0.0;
+    double inflation = 1.0;
+    int harmonics = -1;
+    bool valid = false;
+  };
+
+  void row_at(const Eigen::Vector3d& p, double phi_rad, double away, Row& row) const noexcept;
+  void accumulate(std::span<const Patch> patches) noexcept;
+  [[nodiscard]] Columns columns_of(const Order& order) const noexcept;
+  bool solve(const Columns& columns, Row& solution) noexcept;
+  [[nodiscard]] double squares(std::span<const Patch> patches, const Row& solution) const noexcept;
+
+  std::span<double> normal_;
+  std::span<double> factor_;
+  std::span<Fitted> fitted_;
+};
+
+}  // namespace dseam::seam

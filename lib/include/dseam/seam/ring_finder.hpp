@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "dseam/base/arena.hpp"
+#include "dseam/base/buffer.hpp"
+#include "dseam/seam/seam_report.hpp"
+#include "dseam/seam/surface_finder.hpp"
+
+namespace dseam::seam {
+
+/// The two surfaces that meet in a ring, set up so that both normals point to the air: the shell's
+/// to the side from which the nozzle sticks out, the nozzle's away from its axis, and the nozzle's
+/// axis out of the shell.
+struct Joint {
+  Surface shell;
+  Surface nozzle;
+  double shell_sign = 1.0;  ///< -1: the air is on the inside of the shell's signed distance.
+};
+
+[[nodiscard]] double shell_distance(const Joint& joint, const Eigen::Vector3d& p) noexcept;
+[[nodiscard]] Eigen::Vector3d shell_normal(const Joint& joint, const Eigen::Vector3d& p) noexcept;
+
+/// Two unit vectors across the nozzle's axis: angle 0 is base x laid into the ring, and angles
+/// grow counter-clockwise as seen from the nozzle's free end.
+struct NozzleFrame {
+  Eigen::Vector3d u = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d v = Eigen::Vector3d::UnitY();
+};
+[[nodiscard]] NozzleFrame frame_of(const Surface& nozzle) noexcept;
+[[nodiscard]] double angle_about(const Surface& nozzle, const NozzleFrame& frame,
+                                 const Eigen::Vector3d& p) noexcept;
+
+/// Where the nozzle's generator at an angle leaves the shell; nothing where it passes it by.
+[[nodiscard]] std::optional<Eigen::Vector3d> root_at(const Joint& joint, const NozzleFrame& frame,
+                                                     double phi_rad) noexcept;
+
+/// What the caller knows of the ring beforehand.
+struct RingHint {
+  bool has_region = false;
+  Eigen::Vector3d region_min = Eigen::Vector3d::Zero();
+  Eigen::Vector3d region_max = Eigen::Vector3d::Zero();
+  double radius_mm = 0.0;  ///< 0: any.
+  bool has_viewpoint = false;
+  Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  ///< Mean of the cameras' places.
+};
+
+/// Forms every ring in which a cylinder or cone leaves another surface, and chooses the seam.
+///
+/// A ring counts by the length along which both surfaces are seen, the shell outside the nozzle
+/// and the nozzle above the shell: a rim, a bolt hole or a contact with the table has nothing
+/// there.
+///
+/// Time:    O(pairs of surfaces * cells).
+class RingFinder {
+ public:
+  static constexpr int kBins = 72;
+  struct Choice {
+    Refusal refusal = Refusal::kNoRing;
+    Joint joint;
+  };
+
+  [[nodiscard]] static constexpr std::size_t bytes() noexcept {
+    return Arena::bytes<RingCandidate>(kMaxRings) + Arena::bytes<Joint>(kMaxRings);
+  }
+  RingFinder() = default;
+  explicit RingFinder(Arena& arena) noexcept
+      : rings_(arena.take<RingCandidate>(kMaxRings)), joints_(arena.take<Joint>(kMaxRings)) {}
+
+  Choice run(std::span<const Cell> cells, std::span<const FoundSurface> surfaces, double cell_mm,
+             double tolerance_mm, const RingHint& hint, SeamReport& report) noexcept;
+
+ private:
+  static constexpr std::size_t kMaxRings = 64;
+  void consider(std::span<const Cell> cells, const Joint& joint, double cell_mm,
+                double tolerance_mm, const RingHint& hint) noexcept;
+  void keep(const RingCandidate& ring, const Joint& joint) noexcept;
+  Choice choose(SeamReport& report) noexcept;
+
+  Buffer<RingCandidate> rings_;
+  Buffer<Joint> joints_;
+};
+
+}  // namespace dseam::seam

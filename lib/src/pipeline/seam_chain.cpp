@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dseam/pipeline/seam_chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "dseam/seam/quality.hpp"
+
+namespace dseam::pipeline {
+namespace {
+
+using seam::Refusal;
+
+constexpr std::size_t kPointsPerCell = 4;  // Fewer on average, and the cells grow instead.
+constexpr double kMinExtentMm = 3.0;       // A whole part smaller than this came in metres.
+constexpr double kToleranceCells = 0.25;   // How far a surface's cells may lie off it.
+constexpr double kToleranceNoises = 3.0;
+
+std::size_t num_cells(const SeamChain::Capacity& capacity) noexcept {
+  return std::max<std::size_t>(1024, capacity.max_points / kPointsPerCell);
+}
+
+bool is_valid(const SeamChain::Config& c) noexcept {
+  return c.min_coverage >= 0.0 && c.min_coverage <= 1.0 && c.max_hole_rad >= 0.0 &&
+         c.max_sigma_mm > 0.0 && c.point_spacing_mm > 0.0 && std::isfinite(c.point_spacing_mm) &&
+         std::isfinite(c.start_angle_rad) && c.hand_eye_sigma_mm >= 0.0 &&
+         std::isfinite(c.hand_eye_sigma_mm);
+}
+
+seam::RingHint hint_of(const SeamInput& in) noexcept {
+  seam::RingHint hint;
+  if (in.region) {
+    hint.has_region = true;
+    hint.region_min = in.region->min_base;
+    hint.region_max = in.region->max_base;
+  }
+  hint.radius_mm = in.expected_radius_mm.value_or(0.0);
+  double count = 0.0;
+  for (const splice::SplicedView& view : in.views) {
+    if (view.state == splice::ViewState::kUsed) {
+      hint.viewpoint += view.T_base_camera.translation_mm;
+      count += 1.0;
+    }
+  }
+  hint.has_viewpoint = count > 0.0;
+  hint.viewpoint /= std::max(1.0, count);
+  return hint;
+}
+
+Refusal too_few_surfaces(std::span<const seam::FoundSurface> surfaces) noexcept {
+  const bool plane = !surfaces.empty() && surfaces[0].surface.kind == seam::SurfaceKind::kPlane;
+  return surfaces.size() == 1 && plane ? Refusal::kCoplanar : Refusal::kOneSurface;
+}
+
+}  // namespace
+
+std::size_t SeamChain::bytes(const Capacity& capacity) noexcept {
+  const std::size_t cells = num_cells(capacity);
+  return seam::CellMap::bytes(cells) + seam::SurfaceFinder::bytes(cells) +
+         seam::RingFinder::bytes() + seam::JointFit::bytes(capacity.max_points) +
+         Arena::bytes<Workspace>(1) + Arena::bytes<float>(capacity.max_points / 2);
+}
+
+SeamChain::SeamChain(const Config& config, const Capacity& capacity, Arena& arena) noexcept
+    : config_(config),
+      cells_(num_cells(capacity), arena),
+      surfaces_(num_cells(capacity), arena),
+      rings_(arena),
+      fit_(capacity.max_points, arena),
+      work_(arena.take<Workspace>(1)),
+      scratch_(arena.take<float>(capacity.max_points / 2)) {}
+
+Result<SeamChain> SeamChain::make(const Config& config, const Capacity& capacity,
+                                  Arena& arena) noexcept {
+  if (!is_valid(config) || capacity.max_points < 64) {
+    return Errc::kInvalidArgument;
+  }
+  const SeamChain chain(config, capacity, arena);
+  if (arena.exhausted()) {
+    return Errc::kOutOfMemory;
+  }
+  return chain;
+}
+
+seam::SeamReport SeamChain::run(const SeamInput& in, Buffer<seam::SeamPoint>& out) noexcept {
+  seam::SeamReport report;
+  report.reference = config_.reference;
+  out.clear();
+  seam::Joint joint;
+  if (find_joint(in, report, joint) && fit_joint(in, joint, report) && find_edge(in, report)) {
+    build_curve(in, report, out);
+  }
+  return report;
+}
+
+bool SeamChain::find_joint(const SeamInput& in, seam::SeamReport& report,
+                           seam::Joint& joint) noexcept {
+  const seam::CellMap::Report cells = cells_.run(in.cloud_base);
+  report.num_points = cells.num_points;
+  report.num_not_finite = cells.num_not_finite;
+  report.noise_mm = cells.noise_mm;
+  report.spacing_mm = cells.spacing_mm;
+  report.refusal = cells.num_points == 0            ? Refusal::kEmptyCloud
+                   : cells.full                     ? Refusal::kFull
+                   : cells.extent_mm < kMinExtentMm ? Refusal::kNotMillimetres
+                                                    : Refusal::kNone;
+  if (report.refusal != Refusal::kNone) {
+    return false;
+  }
+  cell_mm_ = cells.cell_mm;
+  tolerance_mm_ = std::max(kToleranceCells * cells.cell_mm, kToleranceNoises * cells.noise_mm);
+  surfaces_.run(cells_.cells(), cell_mm_, tolerance_mm_);
+  const auto surfaces = surfaces_.surfaces();
+  report.num_surfaces = static_cast<std::uint32_t>(surfaces.size());
+  if (surfaces.size() < 2) {
+    report.refusal = too_few_surfaces(surfaces);
+    return false;
+  }
+  const seam::RingFinder::Choice choice =
+      rings_.run(cells_.cells(), surfaces, cell_mm_, tolerance_mm_, hint_of(in), report);
+  report.refusal = choice.refusal;
+  joint = choice.joint;
+  return choice.refusal == Refusal::kNone;
+}
+
+bool SeamChain::fit_joint(const SeamInput& in, const seam::Joint& joint,
+                          seam::SeamReport& report) noexcept {
+  if (!fit_.run(in.cloud_base.points, joint, report.spacing_mm, tolerance_mm_)) {
+    report.refusal = Refusal::kLowCoverage;
+    return false;
+  }
+  seam::describe_joint(fit_, report.joint);
+  seam::describe_residuals(fit_, scratch_, report.quality);
+  return true;
+}
+
+bool SeamChain::find_edge(const SeamInput& /*in*/, seam::SeamReport& report) noexcept {
+  edge_ = nullptr;
+  const bool needs_gap = config_.reference == seam::ReferenceCurve::kGapMiddle ||
+                         config_.reference == seam::ReferenceCurve::kNozzleEdge;
+  if (needs_gap && edge_ == nullptr) {
+    report.refusal = Refusal::kNoSuchReference;
+    return false;
+  }
+  return true;
+}
+
+void SeamChain::build_curve(const SeamInput& /*in*/, seam::SeamReport& report,
+                            Buffer<seam::SeamPoint>& out) noexcept {
+  Workspace& work = work_[0];
+  work.coverage.run(fit_, edge_, report.spacing_mm);
+  const seam::ErrorSources errors{0.0, config_.hand_eye_sigma_mm};
+  const seam::CurveBuilder::Report built =
+      work.builder.run({config_.reference, config_.point_spacing_mm, config_.start_angle_rad,
+                        config_.counter_clockwise},
+                       fit_, edge_, work.coverage, errors, out);
+  if (!built.placed) {
+    report.refusal = built.full ? Refusal::kFull : Refusal::kNoRing;
+    return;
+  }
+  report.closed = true;
+  report.length_mm = built.length_mm;
+  report.quality.closure_mm = built.closure_mm;
+  work.coverage.report(config_.counter_clockwise, report);
+  seam::describe_curve(out.view(), report);
+  report.refusal =
+      seam::verdict_of(report, {config_.min_coverage, config_.max_hole_rad, config_.max_sigma_mm});
+}
+
+}  // namespace dseam::pipeline

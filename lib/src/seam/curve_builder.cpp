@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dseam/seam/curve_builder.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace dseam::seam {
+namespace {
+
+constexpr double kTurnRad = 2.0 * std::numbers::pi;
+constexpr int kNewtonSteps = 8;
+constexpr double kPlacedMm = 1e-7;
+constexpr double kStepRad = 2e-3;  // Of the central difference that gives the tangent.
+constexpr double kHighSigmaMm = 0.1;
+constexpr double kMediumSigmaMm = 0.3;
+constexpr double kLowSigmaMm = 1.0;
+constexpr double kSmallHoleRad = 10.0 * std::numbers::pi / 180.0;
+
+Confidence confidence_of(const SeamPoint& point, double hole_rad) noexcept {
+  const double sigma = std::max(point.sigma_lateral_mm, point.sigma_normal_mm);
+  const bool measured = point.source == Source::kMeasured;
+  if (measured && sigma <= kHighSigmaMm) {
+    return Confidence::kHigh;
+  }
+  if ((measured && sigma <= kMediumSigmaMm) ||
+      (hole_rad <= kSmallHoleRad && sigma <= kHighSigmaMm)) {
+    return Confidence::kMedium;
+  }
+  return sigma <= kLowSigmaMm ? Confidence::kLow : Confidence::kNone;
+}
+
+}  // namespace
+
+CurveBuilder::Report CurveBuilder::run(const Config& config, const JointFit& fit,
+                                       const EdgeCurve* edge, const RingCoverage& coverage,
+                                       const ErrorSources& errors,
+                                       Buffer<SeamPoint>& out) noexcept {
+  config_ = config;
+  fit_ = &fit;
+  edge_ = edge;
+  Report report;
+  out.clear();
+  if (!measure_length()) {
+    return report;
+  }
+  report.length_mm = lengths_[kStations];
+  const double count = std::max(16.0, std::round(report.length_mm / config.point_spacing_mm));
+  if (!(count <= static_cast<double>(out.capacity()))) {
+    report.full = true;
+    return report;
+  }
+  for (double i = 0.0; i < count; i += 1.0) {
+    (void)out.append(point_at(report.length_mm * i / count, coverage, errors));
+  }
+  const auto again = place(angle_of(kTurnRad), stations_[0]);
+  report.closure_mm = again ? (*again - out[0].p_base).norm() : report.length_mm;
+  report.placed = true;
+  return report;
+}
+
+double CurveBuilder::angle_of(double turn_rad) const noexcept {
+  return config_.start_angle_rad + (config_.counter_clockwise ? turn_rad : -turn_rad);
+}
+
+double CurveBuilder::offset_at(double phi_rad) const noexcept {
+  if (edge_ == nullptr || config_.reference == ReferenceCurve::kRoot) {
+    return 0.0;
+  }
+  return edge_->at(phi_rad) * (config_.reference == ReferenceCurve::kGapMiddle ? 0.5 : 1.0);
+}
+
+// Newton on: on the shell, off the nozzle by the edge's offset, at the angle.
+std::optional<Eigen::Vector3d> CurveBuilder::place(double phi_rad,
+                                                   const Eigen::Vector3d& guess) const noexcept {
+  const Joint& joint = fit_->joint();
+  const NozzleFrame& frame = fit_->frame();
+  const Eigen::Vector3d aside = std::cos(phi_rad) * frame.v - std::sin(phi_rad) * frame.u;
+  const double offset = offset_at(phi_rad);
+  Eigen::Vector3d p = guess;
+  for (int i = 0; i < kNewtonSteps; ++i) {
+    Eigen::Matrix3d slopes;
+    slopes.row(0) = shell_normal(joint, p);
+    slopes.row(1) = outward_normal(joint.nozzle, p);
+    slopes.row(2) = aside;
+    const Eigen::Vector3d miss(fit_->above_shell(p), fit_->outside_nozzle(p) - offset,
+                               aside.dot(p - joint.nozzle.point));
+    const Eigen::Vector3d step = slopes.inverse() * miss;
+    if (!(step.norm() < joint.nozzle.radius_mm)) {
+      return std::nullopt;
+    }
+    p -= step;
+    if (step.norm() < kPlacedMm) {
+      return p;
+    }
+  }
+  return p;
+}
+
+bool CurveBuilder::measure_length() noexcept {
+  const Joint& joint = fit_->joint();
+  for (std::size_t i = 0; i < kStations; ++i) {
+    const double phi = angle_of(kTurnRad * static_cast<double>(i) / double{kStations});
+    const auto root = root_at(joint, fit_->frame(), phi);
+    const auto placed = root ? place(phi, *root) : std::nullopt;
+    if (!placed) {
+      return false;
+    }
+    stations_[i] = *placed;
+  }
+  lengths_[0] = 0.0;
+  for (std::size_t i = 0; i < kStations; ++i) {
+    const auto at = [&](std::size_t k) -> const Eigen::Vector3d& {
+      return stations_[k % kStations];
+    };
+    const double chord = (at(i + 1) - at(i)).norm();
+    const double wide = (at(i + 2) - at(i + kStations - 1)).norm();
+    // The arc over three steps sags by nine times the chord's: Richardson's extrapolation.
+    const double arc = chord + (3.0 * chord - wide) / 24.0;
+    lengths_[i + 1] = lengths_[i] + arc;
+  }
+  return true;
+}
+
+SeamPoint CurveBuilder::point_at(double s_mm, const RingCoverage& coverage,
+                                 const ErrorSources& errors) const noexcept {
+  const auto after = std::upper_bound(lengths_.begin() + 1, lengths_.end() - 1, s_mm);
+  const auto i = static_cast<std::size_t>(after - lengths_.begin()) - 1;
+  const double part = (s_mm - lengths_[i]) / (lengths_[i + 1] - lengths_[i]);
+  const double phi = angle_of(kTurnRad * (static_cast<double>(i) + part) / double{kStations});
+  const Eigen::Vector3d guess =
+      stations_[i] + part * (stations_[(i + 1) % kStations] - stations_[i]);
+  const double step = config_.counter_clockwise ? kStepRad : -kStepRad;
+  SeamPoint point;
+  point.s_mm = s_mm;
+  point.p_base = place(phi, guess).value_or(guess);
+  const Eigen::Vector3d ahead = place(phi + step, guess).value_or(guess);
+  const Eigen::Vector3d behind = place(phi - step, guess).value_or(guess);
+  point.tangent = (ahead - behind).normalized();
+  const auto across_tangent = [&](const Eigen::Vector3d& n) -> Eigen::Vector3d {
+    return (n - n.dot(point.tangent) * point.tangent).normalized();
+  };
+  point.n_shell = across_tangent(shell_normal(fit_->joint(), point.p_base));
+  point.n_nozzle = across_tangent(outward_normal(fit_->joint().nozzle, point.p_base));
+  point.dihedral_rad =
+      std::numbers::pi - std::acos(std::clamp(point.n_shell.dot(point.n_nozzle), -1.0, 1.0));
+  point.gap_mm = edge_ == nullptr ? 0.0 : std::max(0.0, edge_->at(phi));
+  point.source = coverage.measured_at(phi) ? Source::kMeasured : Source::kInterpolated;
+  estimate_errors(point, phi, errors);
+  point.confidence = confidence_of(point, coverage.hole_at(phi));
+  return point;
+}
+
+// A touching joint is displaced where its surfaces are; an edge is displaced along the shell by
+// its own error.
+void CurveBuilder::estimate_errors(SeamPoint& point, double phi_rad,
+                                   const ErrorSources& errors) const noexcept {
+  const double common = errors.pose_sigma_mm * errors.pose_sigma_mm;
+  const double hand_eye = errors.hand_eye_sigma_mm * errors.hand_eye_sigma_mm;
+  const double shell = fit_->shell_variance(point.p_base) + common;
+  const double nozzle = fit_->nozzle_variance(point.p_base) + common;
+  const double cosine = point.n_shell.dot(point.n_nozzle);
+  const double sine_squared = std::max(1e-3, 1.0 - cosine * cosine);
+  const bool on_edge = edge_ != nullptr && config_.reference != ReferenceCurve::kRoot;
+  const double root = (nozzle + cosine * cosine * shell) / sine_squared;
+  const double lateral = on_edge ? edge_->variance_at(phi_rad) + common : root;
+  point.sigma_lateral_mm = std::sqrt(lateral + hand_eye);
+  point.sigma_normal_mm = std::sqrt(shell + hand_eye);
+}
+
+}  // namespace dseam::seam

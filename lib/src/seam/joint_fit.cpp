@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dseam/seam/joint_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace dseam::seam {
+namespace {
+
+constexpr double kTurnRad = 2.0 * std::numbers::pi;
+constexpr double kInnerSpacings = 2.0;
+constexpr double kTukeyScales = 4.685 * 1.4826;  // On the median absolute residual.
+constexpr double kPatchMm = 8.0;  // The length over which depth noise hangs together.
+constexpr std::size_t kPatchesAway = 4;
+constexpr double kMinPatchWeight = 3.0;
+constexpr double kFullPatchWeight = 8.0;
+constexpr std::size_t kMinPoints = 60;
+constexpr int kRefinements = 3;
+constexpr int kModelRounds = 3;
+
+}  // namespace
+
+JointFit::JointFit(std::size_t max_points, Arena& arena) noexcept
+    : scratch_(arena.take<float>(max_points / 2)),
+      sums_(arena.take<PatchSum>(kMaxPatches)),
+      patches_(arena.take<ResidualModel::Patch>(kMaxPatches)) {
+  shell_.points = Buffer<NearPoint>(arena.take<NearPoint>(max_points / 2));
+  nozzle_.points = Buffer<NearPoint>(arena.take<NearPoint>(max_points / 2));
+  shell_.residual = ResidualModel(arena);
+  nozzle_.residual = ResidualModel(arena);
+}
+
+bool JointFit::run(const cloud::CloudView& cloud, const Joint& found, double spacing_mm,
+                   double tolerance_mm) noexcept {
+  joint_ = found;
+  band_mm_ = std::clamp(0.5 * found.nozzle.radius_mm, 12.0, 28.0) + 2.0 * spacing_mm;
+  inner_mm_ = kInnerSpacings * spacing_mm;
+  const double round = kTurnRad * found.nozzle.radius_mm / std::max(kPatchMm, 3.0 * spacing_mm);
+  patches_round_ = static_cast<std::size_t>(std::clamp(round, 24.0, 120.0));
+  for (int i = 0; i < 2; ++i) {
+    select(cloud, i == 0 ? tolerance_mm : 1.5 * tolerance_mm);
+    if (!refine(shell_, joint_.shell) || !refine(nozzle_, joint_.nozzle)) {
+      return false;
+    }
+  }
+  select(cloud, 1.5 * tolerance_mm);
+  model(shell_, joint_.shell);
+  model(nozzle_, joint_.nozzle);
+  return shell_.fitted && nozzle_.fitted;
+}
+
+void JointFit::select(const cloud::CloudView& cloud, double tolerance_mm) noexcept {
+  frame_ = frame_of(joint_.nozzle);
+  pivot_ = joint_.nozzle.point;
+  shell_.points.clear();
+  nozzle_.points.clear();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d p(cloud.x[i], cloud.y[i], cloud.z[i]);
+    const double outside = signed_distance(joint_.nozzle, p);
+    if (!(outside > -tolerance_mm && outside < band_mm_)) {
+      continue;
+    }
+    const double above = shell_distance(joint_, p);
+    const bool on_shell = std::abs(above) < tolerance_mm && outside > 0.0;
+    const bool on_nozzle = outside < tolerance_mm && above > 0.0 && above < band_mm_;
+    if ((!on_shell && !on_nozzle) || shell_normal(joint_, p).dot(joint_.nozzle.axis) < -0.1) {
+      continue;  // Not near, or where the nozzle's axis leaves the shell on the other side.
+    }
+    const bool to_shell = on_shell && (!on_nozzle || outside > above);
+    NearPoint near;
+    near.from_pivot = (p - pivot_).cast<float>();
+    near.phi_rad = angle_about(joint_.nozzle, frame_, p);
+    near.away_mm = to_shell ? outside : above;
+    near.distance_mm = to_shell ? joint_.shell_sign * above : outside;
+    (void)(to_shell ? shell_ : nozzle_).points.append(near);
+  }
+}
+
+// The median absolute residual of the points clear of the joint.
+double JointFit::scale_of(const Side& side) noexcept {
+  std::size_t n = 0;
+  for (const NearPoint& q : side.points.view()) {
+    if (q.away_mm > inner_mm_) {
+      const Eigen::Vector3d p = pivot_ + q.from_pivot.cast<double>();
+      const double rest = q.distance_mm - side.residual.at(p, q.phi_rad, q.away_mm / band_mm_);
+      scratch_[n++] = static_cast<float>(std::abs(rest));
+    }
+  }
+  if (n < kMinPoints) {
+    return 0.0;
+  }
+  const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(n / 2);
+  std::nth_element(scratch_.begin(), middle, scratch_.begin() + static_cast<std::ptrdiff_t>(n));
+  return static_cast<double>(*middle) + 1e-4;
+}
+
+bool JointFit::refine(Side& side, Surface& surface) noexcept {
+  side.residual.reset(surface);
+  for (int i = 0; i < kRefinements; ++i) {
+    const double cut = kTukeyScales * scale_of(side);
+    if (cut == 0.0) {
+      return false;
+    }
+    SurfaceEquations equations;
+    for (const NearPoint& q : side.points.view()) {
+      if (q.away_mm > inner_mm_) {
+        const Eigen::Vector3d p = pivot_ + q.from_pivot.cast<double>();
+        equations.add(surface, p, tukey(q.distance_mm / cut));
+      }
+    }
+    const std::optional<Surface> next = equations.solve(surface);
+    if (!next) {
+      return false;
+    }
+    surface = *next;
+    for (NearPoint& q : side.points.items()) {
+      q.distance_mm = signed_distance(surface, pivot_ + q.from_pivot.cast<double>());
+    }
+  }
+  return true;
+}
+
+void JointFit::model(Side& side, const Surface& surface) noexcept {
+  side.residual.reset(surface);
+  side.fitted = false;
+  for (int round = 0; round < kModelRounds; ++round) {
+    side.scale_mm = 1.4826 * scale_of(side);
+    const double cut = kTukeyScales / 1.4826 * side.scale_mm;
+    const std::size_t count = collect_patches(side, cut);
+    side.fitted = cut > 0.0 && side.residual.fit(patches_.first(count));
+    if (!side.fitted) {
+      return;
+    }
+    side.residual.inflate(neighbour_correlation(side, count));
+  }
+  const double cut = kTukeyScales / 1.4826 * side.scale_mm;
+  for (NearPoint& q : side.points.items()) {
+    const Eigen::Vector3d p = pivot_ + q.from_pivot.cast<double>();
+    const double rest = q.distance_mm - side.residual.at(p, q.phi_rad, q.away_mm / band_mm_);
+    q.trusted = std::abs(rest) < cut;
+  }
+}
+
+std::size_t JointFit::collect_patches(const Side& side, double cut_mm) noexcept {
+  const std::size_t used = patches_round_ * kPatchesAway;
+  std::fill_n(sums_.begin(), used, PatchSum{});
+  const double width = (band_mm_ - inner_mm_) / double{kPatchesAway};
+  for (const NearPoint& q : side.points.view()) {
+    if (!(q.away_mm > inner_mm_)) {
+      continue;
+    }
+    const Eigen::Vector3d p = pivot_ + q.from_pivot.cast<double>();
+    const double rest = q.distance_mm - side.residual.at(p, q.phi_rad, q.away_mm / band_mm_);
+    const double turn = (q.phi_rad / kTurnRad + 0.5) * static_cast<double>(patches_round_);
+    const auto column = std::min(static_cast<std::size_t>(std::max(0.0, turn)), patches_round_ - 1);
+    const auto row =
+        std::min(static_cast<std::size_t>((q.away_mm - inner_mm_) / width), kPatchesAway - 1);
+    const double weight = tukey(rest / cut_mm);
+    PatchSum& sum = sums_[row * patches_round_ + column];
+    sum.point += weight * p;
+    sum.turn_cos += weight * std::cos(q.phi_rad);
+    sum.turn_sin += weight * std::sin(q.phi_rad);
+    sum.away += weight * q.away_mm / band_mm_;
+    sum.distance += weight * q.distance_mm;
+    sum.weight += weight;
+  }
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < used; ++i) {
+    const PatchSum& s = sums_[i];
+    if (s.weight >= kMinPatchWeight) {
+      patches_[count++] = {s.point / s.weight, std::atan2(s.turn_sin, s.turn_cos),
+                           s.away / s.weight, s.distance / s.weight,
+                           std::min(1.0, s.weight / kFullPatchWeight)};
+    }
+  }
+  return count;
+}
+
+// Neighbouring patches that err alike tell less than their number: (1 + rho) / (1 - rho).
+double JointFit::neighbour_correlation(const Side& side, std::size_t count) const noexcept {
+  double same = 1e-12;
+  double next = 0.0;
+  double last = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const ResidualModel::Patch& q = patches_[i];
+    const double rest = q.distance_mm - side.residual.at(q.mean, q.phi_rad, q.away);
+    same += rest * rest;
+    next += i > 0 ? rest * last : 0.0;
+    last = rest;
+  }
+  const double rho = std::clamp(next / same, 0.0, 0.8);
+  return (1.0 + rho) / (1.0 - rho);
+}
+
+double JointFit::above_shell(const Eigen::Vector3d& p) const noexcept {
+  const double away = signed_distance(joint_.nozzle, p) / band_mm_;
+  const double phi = angle_about(joint_.nozzle, frame_, p);
+  return joint_.shell_sign * (signed_distance(joint_.shell, p) - shell_.residual.at(p, phi, away));
+}
+
+double JointFit::outside_nozzle(const Eigen::Vector3d& p) const noexcept {
+  const double away = shell_distance(joint_, p) / band_mm_;
+  const double phi = angle_about(joint_.nozzle, frame_, p);
+  return signed_distance(joint_.nozzle, p) - nozzle_.residual.at(p, phi, away);
+}
+
+double JointFit::shell_variance(const Eigen::Vector3d& p) const noexcept {
+  const double away = signed_distance(joint_.nozzle, p) / band_mm_;
+  return shell_.residual.variance_at(p, angle_about(joint_.nozzle, frame_, p), away);
+}
+
+double JointFit::nozzle_variance(const Eigen::Vector3d& p) const noexcept {
+  const double away = shell_distance(joint_, p) / band_mm_;
+  return nozzle_.residual.variance_at(p, angle_about(joint_.nozzle, frame_, p), away);
+}
+
+}  // namespace dseam::seam

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dseam/seam/residual_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dseam::seam {
+namespace {
+
+constexpr double kRidge = 1e-7;
+constexpr std::size_t kFirstHarmonic = kMaxSurfaceParameters + ResidualModel::kOvalColumns;
+
+// Harmonics 0..K of an angle: 1, cos, sin, cos 2, sin 2, ...
+void write_harmonics(double phi_rad, double scale, std::span<double> out) noexcept {
+  const double c1 = std::cos(phi_rad);
+  const double s1 = std::sin(phi_rad);
+  double c = 1.0;
+  double s = 0.0;
+  out[0] = scale;
+  for (std::size_t k = 1; k < out.size(); k += 2) {
+    const double next = c * c1 - s * s1;
+    s = s * c1 + c * s1;
+    c = next;
+    out[k] = scale * c;
+    out[k + 1] = scale * s;
+  }
+}
+
+void write_ovality(const Surface& surface, const Eigen::Vector3d& p,
+                   std::span<double> out) noexcept {
+  if (surface.kind != SurfaceKind::kCylinder && surface.kind != SurfaceKind::kCone) {
+    std::fill(out.begin(), out.end(), 0.0);
+    return;
+  }
+  const AcrossAxis frame = across(surface.axis);
+  const double theta = angle_about(surface, {frame.u, frame.v}, p);
+  out[0] = std::cos(2.0 * theta);
+  out[1] = std::sin(2.0 * theta);
+  out[2] = std::cos(3.0 * theta);
+  out[3] = std::sin(3.0 * theta);
+}
+
+double dot(const ResidualModel::Row& a, const ResidualModel::Row& b) noexcept {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += a[i] * b[i];
+  }
+  return sum;
+}
+
+}  // namespace
+
+void ResidualModel::reset(const Surface& surface) noexcept {
+  fitted_[0] = {};
+  fitted_[0].surface = surface;
+}
+
+void ResidualModel::row_at(const Eigen::Vector3d& p, double phi_rad, double away,
+                           Row& row) const noexcept {
+  const SurfaceVector j = distance_jacobian(fitted_[0].surface, p);
+  std::copy_n(j.data(), kMaxSurfaceParameters, row.begin());
+  const std::span<double> all(row);
+  write_ovality(fitted_[0].surface, p, all.subspan(kMaxSurfaceParameters, kOvalColumns));
+  write_harmonics(phi_rad, 1.0, all.subspan(kFirstHarmonic, kHarmonicColumns));
+  write_harmonics(phi_rad, away, all.subspan(kFirstHarmonic + kHarmonicColumns, kHarmonicColumns));
+}
+
+ResidualModel::Columns ResidualModel::columns_of(const Order& order) const noexcept {
+  Columns columns;
+  const auto take = [&](std::size_t first, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      columns.index[columns.count++] = first + i;
+    }
+  };
+  take(0, static_cast<std::size_t>(num_parameters(fitted_[0].surface.kind)));
+  if (order.oval) {
+    take(kMaxSurfaceParameters, kOvalColumns);
+  }
+  if (order.constant >= 0) {
+    take(kFirstHarmonic, static_cast<std::size_t>(2 * order.constant + 1));
+  }
+  if (order.linear >= 0) {
+    take(kFirstHarmonic + kHarmonicColumns, static_cast<std::size_t>(2 * order.linear + 1));
+  }
+  return columns;
+}
+
+void ResidualModel::accumulate(std::span<const Patch> patches) noexcept {
+  std::fill(normal_.begin(), normal_.end(), 0.0);
+  fitted_[0].right = {};
+  Row row;
+  for (const Patch& patch : patches) {
+    row_at(patch.mean, patch.phi_rad, patch.away, row);
+    for (std::size_t i = 0; i < kColumns; ++i) {
+      const double scaled = patch.weight * row[i];
+      fitted_[0].right[i] += scaled * patch.distance_mm;
+      for (std::size_t k = 0; k <= i; ++k) {
+        normal_[i * kColumns + k] += scaled * row[k];
+      }
+    }
+  }
+}
+
+bool ResidualModel::solve(const Columns& columns, Row& solution) noexcept {
+  LentSymmetric factor(factor_, columns.count);
+  Row right{};
+  for (std::size_t i = 0; i < columns.count; ++i) {
+    right[i] = fitted_[0].right[columns.index[i]];
+    for (std::size_t k = 0; k <= i; ++k) {
+      factor.at(i, k) = normal_[columns.index[i] * kColumns + columns.index[k]];
+    }
+    factor.at(i, i) = factor.at(i, i) * (1.0 + kRidge) + 1e-12;
+  }
+  if (!factor.factorise()) {
+    return false;
+  }
+  factor.solve(right);
+  solution = {};
+  for (std::size_t i = 0; i < columns.count; ++i) {
+    solution[columns.index[i]] = right[i];
+  }
+  return true;
+}
+
+double ResidualModel::squares(std::span<const Patch> patches, const Row& solution) const noexcept {
+  double sum = 0.0;
+  Row row;
+  for (const Patch& patch : patches) {
+    row_at(patch.mean, patch.phi_rad, patch.away, row);
+    const double rest = patch.distance_mm - dot(row, solution);
+    sum += patch.weight * rest * rest;
+  }
+  return sum;
+}
+
+bool ResidualModel::fit(std::span<const Patch> patches) noexcept {
+  constexpr std::array<Order, 9> kOrders = {{{false, -1, -1},
+                                             {true, -1, -1},
+                                             {false, 2, -1},
+                                             {false, 2, 1},
+                                             {true, 2, 1},
+                                             {false, 4, -1},
+                                             {false, 4, 2},
+                                             {true, 4, 4},
+                                             {true, 6, 4}}};
+  accumulate(patches);
+  const double n = static_cast<double>(patches.size());
+  double best = 1e300;
+  fitted_[0].valid = false;
+  for (const Order& order : kOrders) {
+    const Columns columns = columns_of(order);
+    const double p = static_cast<double>(columns.count);
+    Row solution;
+    if (n < 2.0 * p + 4.0 || !solve(columns, solution)) {
+      continue;
+    }
+    const double rest = squares(patches, solution) + 1e-12;
+    const double criterion = n * std::log(rest / n) + p * std::log(n);
+    if (criterion < best) {
+      best = criterion;
+      fitted_[0].valid = true;
+      fitted_[0].columns = columns;
+      fitted_[0].harmonics = std::max(order.constant, order.oval ? 3 : -1);
+      fitted_[0].scatter_mm = std::sqrt(rest / (n - p));
+    }
+  }
+  return fitted_[0].valid && solve(fitted_[0].columns, fitted_[0].solution);
+}
+
+double ResidualModel::at(const Eigen::Vector3d& p, double phi_rad, double away) const noexcept {
+  if (!fitted_[0].valid) {
+    return 0.0;
+  }
+  Row row;
+  row_at(p, phi_rad, away, row);
+  return dot(row, fitted_[0].solution);
+}
+
+double ResidualModel::variance_at(const Eigen::Vector3d& p, double phi_rad,
+                                  double away) const noexcept {
+  if (!fitted_[0].valid) {
+    return 0.0;
+  }
+  Row row;
+  row_at(p, phi_rad, away, row);
+  Row x{};
+  for (std::size_t i = 0; i < fitted_[0].columns.count; ++i) {
+    x[i] = row[fitted_[0].columns.index[i]];
+  }
+  const LentSymmetric factor(factor_, fitted_[0].columns.count);
+  factor.forward(std::span<double>(x).first(fitted_[0].columns.count));
+  return fitted_[0].inflation * fitted_[0].scatter_mm * fitted_[0].scatter_mm * dot(x, x);
+}
+
+}  // namespace dseam::seam

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dseam/seam/ring_finder.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace dseam::seam {
+namespace {
+
+constexpr double kTurnRad = 2.0 * std::numbers::pi;
+constexpr double kSupportCosine = 0.82;    // 35 degrees: cells at a joint have blurred normals.
+constexpr double kMinBinShare = 0.25;      // A ring seen less than this is not listed as one.
+constexpr double kEqualShare = 0.80;       // Scores closer than this are equally good.
+constexpr double kRadiusTolerance = 0.15;  // Of the expected radius.
+constexpr double kMinJointCosine = 0.97;   // Surfaces nearer than 14 degrees do not make a joint.
+
+constexpr double kOtherSideCosine = -0.1;
+
+// What lies around a ring, bin by bin of the angle about the nozzle.
+struct Support {
+  std::array<std::uint16_t, RingFinder::kBins> shell_outside{};
+  std::array<std::uint16_t, RingFinder::kBins> nozzle_above{};
+  std::array<std::uint16_t, RingFinder::kBins> nozzle_below{};
+};
+
+int bin_of(double phi_rad) noexcept {
+  const double turn = phi_rad / kTurnRad;
+  const int bin = static_cast<int>((turn - std::floor(turn)) * RingFinder::kBins);
+  return std::clamp(bin, 0, RingFinder::kBins - 1);
+}
+
+bool lies_along(const Eigen::Vector3d& normal, const Cell& cell) noexcept {
+  return std::abs(normal.dot(cell.normal)) > kSupportCosine;
+}
+
+Support support_of(std::span<const Cell> cells, const Joint& joint, const NozzleFrame& frame,
+                   double cell_mm, double tolerance_mm) noexcept {
+  Support s;
+  const double band = std::max(5.0 * cell_mm, 15.0);
+  for (const Cell& cell : cells) {
+    if (shell_normal(joint, cell.mean).dot(joint.nozzle.axis) < kOtherSideCosine) {
+      continue;  // Where the nozzle's axis leaves the shell on its other side.
+    }
+    const double above = shell_distance(joint, cell.mean);
+    const double outside = signed_distance(joint.nozzle, cell.mean);
+    const auto bin = static_cast<std::size_t>(bin_of(angle_about(joint.nozzle, frame, cell.mean)));
+    const bool on_shell =
+        std::abs(above) < tolerance_mm && outside > tolerance_mm && outside < band;
+    const bool on_nozzle = std::abs(outside) < tolerance_mm && std::abs(above) > tolerance_mm &&
+                           std::abs(above) < band;
+    if (on_shell && lies_along(outward_normal(joint.shell, cell.mean), cell)) {
+      ++s.shell_outside[bin];
+    } else if (on_nozzle && lies_along(outward_normal(joint.nozzle, cell.mean), cell)) {
+      ++(above > 0.0 ? s.nozzle_above : s.nozzle_below)[bin];
+    }
+  }
+  return s;
+}
+
+bool contains(const RingHint& hint, const Eigen::Vector3d& p) noexcept {
+  return !hint.has_region || ((p.array() >= hint.region_min.array()).all() &&
+                              (p.array() <= hint.region_max.array()).all());
+}
+
+RingFate fate_of(const RingCandidate& ring, int num_below, const RingHint& hint,
+                 const Eigen::Vector3d& any_root) noexcept {
+  if (num_below > RingFinder::kBins / 2 && ring.coverage < 0.5) {
+    return RingFate::kConvex;
+  }
+  if (ring.coverage < kMinBinShare) {
+    return RingFate::kUnsupported;
+  }
+  if (!contains(hint, ring.centre_base) || !contains(hint, any_root)) {
+    return RingFate::kOutsideRegion;
+  }
+  const double off = std::abs(ring.radius_mm - hint.radius_mm);
+  return hint.radius_mm > 0.0 && off > kRadiusTolerance * hint.radius_mm ? RingFate::kWrongRadius
+                                                                         : RingFate::kOutscored;
+}
+
+}  // namespace
+
+RingFinder::Choice RingFinder::run(std::span<const Cell> cells,
+                                   std::span<const FoundSurface> surfaces, double cell_mm,
+                                   double tolerance_mm, const RingHint& hint,
+                                   SeamReport& report) noexcept {
+  rings_.clear();
+  joints_.clear();
+  for (const FoundSurface& nozzle : surfaces) {
+    const SurfaceKind kind = nozzle.surface.kind;
+    if (kind != SurfaceKind::kCylinder && kind != SurfaceKind::kCone) {
+      continue;
+    }
+    for (const FoundSurface& shell : surfaces) {
+      if (&shell == &nozzle) {
+        continue;
+      }
+      Joint joint{shell.surface, nozzle.surface};
+      consider(cells, joint, cell_mm, tolerance_mm, hint);
+      joint.nozzle.axis = -joint.nozzle.axis;
+      joint.nozzle.slope = -joint.nozzle.slope;
+      consider(cells, joint, cell_mm, tolerance_mm, hint);
+    }
+  }
+  return choose(report);
+}
+
+void RingFinder::consider(std::span<const Cell> cells, const Joint& given, double cell_mm,
+                          double tolerance_mm, const RingHint& hint) noexcept {
+  Joint joint = given;
+  if (joint.shell.kind == SurfaceKind::kPlane &&
+      joint.shell_sign * joint.shell.axis.dot(joint.nozzle.axis) < 0.0) {
+    joint.shell_sign = -1.0;
+  }
+  if (hint.has_viewpoint && shell_distance(joint, hint.viewpoint) < 0.0) {
+    return;  // Nobody saw the shell from that side.
+  }
+  const NozzleFrame frame = frame_of(joint.nozzle);
+  std::array<Eigen::Vector3d, kBins> roots;
+  RingCandidate ring;
+  for (int i = 0; i < kBins; ++i) {
+    const auto root = root_at(joint, frame, (i + 0.5) * kTurnRad / kBins);
+    if (!root || std::abs(shell_normal(joint, *root).dot(outward_normal(joint.nozzle, *root))) >
+                     kMinJointCosine) {
+      return;  // Not closed.
+    }
+    roots[static_cast<std::size_t>(i)] = *root;
+    ring.centre_base += *root / kBins;
+  }
+  const Support support = support_of(cells, joint, frame, cell_mm, tolerance_mm);
+  int num_both = 0;
+  int num_below = 0;
+  for (std::size_t i = 0; i < kBins; ++i) {
+    const bool both = support.shell_outside[i] > 0 && support.nozzle_above[i] > 0;
+    const Eigen::Vector3d step = roots[(i + 1) % kBins] - roots[i];
+    ring.score_mm += both ? step.norm() : 0.0;
+    num_both += both ? 1 : 0;
+    num_below += support.shell_outside[i] > 0 && support.nozzle_below[i] > 0 ? 1 : 0;
+    ring.radius_mm +=
+        (roots[i] - joint.nozzle.point).cross(joint.nozzle.axis).norm() / double{kBins};
+  }
+  ring.coverage = static_cast<double>(num_both) / double{kBins};
+  ring.axis_base = joint.nozzle.axis;
+  ring.shell = joint.shell.kind;
+  ring.nozzle = joint.nozzle.kind;
+  ring.fate = fate_of(ring, num_below, hint, roots[0]);
+  keep(ring, joint);
+}
+
+// One ring may be found from two surfaces that describe the same wall: the better one stays.
+void RingFinder::keep(const RingCandidate& ring, const Joint& joint) noexcept {
+  const double near_mm = 0.15 * ring.radius_mm;
+  for (std::size_t i = 0; i < rings_.size(); ++i) {
+    if ((rings_[i].centre_base - ring.centre_base).norm() < near_mm &&
+        std::abs(rings_[i].radius_mm - ring.radius_mm) < near_mm) {
+      if (ring.score_mm > rings_[i].score_mm) {
+        rings_[i] = ring;
+        joints_[i] = joint;
+      }
+      return;
+    }
+  }
+  if (rings_.append(ring)) {
+    (void)joints_.append(joint);
+  }
+}
+
+RingFinder::Choice RingFinder::choose(SeamReport& report) noexcept {
+  const auto eligible = [&](std::size_t i) { return rings_[i].fate == RingFate::kOutscored; };
+  std::size_t best = rings_.size();
+  bool elsewhere = false;
+  for (std::size_t i = 0; i < rings_.size(); ++i) {
+    elsewhere = elsewhere || rings_[i].fate == RingFate::kOutsideRegion ||
+                rings_[i].fate == RingFate::kWrongRadius;
+    if (eligible(i) && (best == rings_.size() || rings_[i].score_mm > rings_[best].score_mm)) {
+      best = i;
+    }
+  }
+  Choice choice{elsewhere ? Refusal::kOutsideRegion : Refusal::kNoRing, {}};
+  if (best != rings_.size()) {
+    choice = {Refusal::kNone, joints_[best]};
+    for (std::size_t i = 0; i < rings_.size(); ++i) {
+      if (i != best && eligible(i) && rings_[i].score_mm > kEqualShare * rings_[best].score_mm) {
+        rings_[i].fate = RingFate::kEqual;
+        choice.refusal = Refusal::kTwoRings;
+      }
+    }
+    rings_[best].fate = RingFate::kChosen;
+  }
+  std::sort(rings_.items().begin(), rings_.items().end(),
+            [](const RingCandidate& a, const RingCandidate& b) { return a.score_mm > b.score_mm; });
+  report.num_candidates =
+      static_cast<std::uint32_t>(std::min(rings_.size(), SeamReport::kMaxCandidates));
+  std::copy_n(rings_.view().begin(), report.num_candidates, report.candidates.begin());
+  return choice;
+}
+
+}  // namespace dseam::seam

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dseam/pipeline/seam_chain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "support/allocation_counter.hpp"
+#include "support/arena_owner.hpp"
+#include "support/joint_cloud.hpp"
+
+namespace dseam::pipeline {
+namespace {
+
+using seam::Refusal;
+using seam::SeamReport;
+using test::JointCloud;
+using test::JointCloudConfig;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// A chain with memory of its own, and what its last run gave.
+class Finder {
+ public:
+  explicit Finder(const SeamChain::Config& config = {})
+      : owner_(SeamChain::bytes({})),
+        chain_(SeamChain::make(config, {}, owner_.arena()).value()),
+        storage_(8192),
+        points_(storage_) {}
+
+  SeamReport find(const SeamInput& in) { return chain_.run(in, points_); }
+  SeamReport find(const JointCloud& cloud) { return find(SeamInput{.cloud_base = cloud.view()}); }
+
+  [[nodiscard]] std::span<const seam::SeamPoint> points() const { return points_.view(); }
+  [[nodiscard]] double worst_error(const std::vector<Eigen::Vector3d>& truth) const {
+    double worst = 0.0;
+    for (const seam::SeamPoint& point : points()) {
+      worst = std::max(worst, test::distance_to(truth, point.p_base));
+    }
+    return worst;
+  }
+
+ private:
+  test::ArenaOwner owner_;
+  SeamChain chain_;
+  std::vector<seam::SeamPoint> storage_;
+  Buffer<seam::SeamPoint> points_;
+};
+
+/// The joint of the paper.
+JointCloudConfig paper() {
+  JointCloudConfig config;
+  config.axis_angle_rad = 62.9 * kDegree;
+  config.eccentricity_mm = 1.4;
+  return config;
+}
+
+struct Joint {
+  const char* name;
+  JointCloudConfig config;
+  double max_error_mm;
+};
+
+class SeamOfJoint : public testing::TestWithParam<Joint> {};
+
+TEST_P(SeamOfJoint, lies_on_the_true_curve_all_round) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    JointCloudConfig config = GetParam().config;
+    config.seed = seed;
+    const JointCloud cloud(config);
+    Finder finder;
+
+    const SeamReport report = finder.find(cloud);
+
+    EXPECT_TRUE(report.weld()) << name(report.refusal);
+    EXPECT_GE(report.quality.coverage, 0.99);
+    EXPECT_LT(finder.worst_error(cloud.curve(3600, config.gap_mm)), GetParam().max_error_mm);
+  }
+}
+
+std::vector<Joint> joints() {
+  std::vector<Joint> joints;
+  joints.push_back({"the_paper", paper(), 0.01});
+  JointCloudConfig upright;
+  joints.push_back({"upright", upright, 0.01});
+  JointCloudConfig eccentric = paper();
+  eccentric.eccentricity_mm = 20.0;
+  joints.push_back({"eccentric", eccentric, 0.01});
+  JointCloudConfig oval = paper();
+  oval.nozzle_ovality_mm = 0.3;
+  joints.push_back({"oval", oval, 0.03});
+  JointCloudConfig dead_band = paper();
+  dead_band.dead_band_mm = 2.0;
+  joints.push_back({"dead_band", dead_band, 0.02});
+  JointCloudConfig noisy = paper();
+  noisy.noise_mm = 0.3;
+  joints.push_back({"noise_0_3", noisy, 0.1});
+  JointCloudConfig plane = paper();
+  plane.shell = JointCloudConfig::Shell::kPlane;
+  joints.push_back({"plane", plane, 0.01});
+  JointCloudConfig sphere = paper();
+  sphere.shell = JointCloudConfig::Shell::kSphere;
+  sphere.shell_radius_mm = 220.0;
+  sphere.nozzle_radius_mm = 35.0;
+  joints.push_back({"sphere", sphere, 0.01});
+  JointCloudConfig cone = paper();
+  cone.nozzle_slope = -0.1;
+  joints.push_back({"cone", cone, 0.01});
+  return joints;
+}
+
+INSTANTIATE_TEST_SUITE_P(Joints, SeamOfJoint, testing::ValuesIn(joints()),
+                         [](const auto& given) { return std::string(given.param.name); });
+
+TEST(SeamChain, gives_an_ordered_closed_curve_with_even_steps_and_the_normals_of_both_surfaces) {
+  const JointCloud cloud(paper());
+  Finder finder;
+
+  const SeamReport report = finder.find(cloud);
+
+  const auto points = finder.points();
+  ASSERT_GT(points.size(), 100U);
+  const double step = report.length_mm / static_cast<double>(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const seam::SeamPoint& next = points[(i + 1) % points.size()];
+    EXPECT_NEAR((next.p_base - points[i].p_base).norm(), step, 1e-3);
+    EXPECT_NEAR(points[i].s_mm, step * static_cast<double>(i), 1e-9);
+    EXPECT_NEAR(points[i].tangent.dot((next.p_base - points[i].p_base).normalized()), 1.0, 1e-3);
+    EXPECT_NEAR(points[i].n_shell.dot(points[i].tangent), 0.0, 1e-9);
+    EXPECT_GT(points[i].n_shell.z(), 0.0);
+  }
+  EXPECT_LT(report.quality.closure_mm, 1e-6);
+}
+
+TEST(SeamChain, finds_the_papers_dihedral_angles) {
+  const JointCloud cloud(paper());
+  Finder finder;
+
+  (void)finder.find(cloud);
+
+  double least = 10.0;
+  double most = 0.0;
+  for (const seam::SeamPoint& point : finder.points()) {
+    least = std::min(least, point.dihedral_rad);
+    most = std::max(most, point.dihedral_rad);
+  }
+  EXPECT_NEAR(least, 62.9 * kDegree, 1.0 * kDegree);
+  EXPECT_GT(most, 117.0 * kDegree);
+}
+
+TEST(SeamChain, starts_at_the_angle_and_runs_in_the_direction_asked_for) {
+  const JointCloud cloud(JointCloudConfig{});
+  Finder clockwise({.start_angle_rad = 0.5 * std::numbers::pi, .counter_clockwise = false});
+
+  (void)clockwise.find(cloud);
+
+  ASSERT_FALSE(clockwise.points().empty());
+  const seam::SeamPoint& first = clockwise.points().front();
+  EXPECT_NEAR(first.p_base.x(), 0.0, 0.05);
+  EXPECT_NEAR(first.p_base.y(), 59.2, 0.05);
+  EXPECT_NEAR(first.tangent.x(), 1.0, 1e-3);
+}
+
+TEST(SeamChain, the_same_cloud_gives_the_same_bits) {
+  const JointCloud cloud(paper());
+  Finder first;
+  Finder second;
+
+  (void)first.find(cloud);
+  (void)second.find(cloud);
+  (void)second.find(cloud);
+
+  ASSERT_EQ(first.points().size(), second.points().size());
+  for (std::size_t i = 0; i < first.points().size(); ++i) {
+    EXPECT_EQ(first.points()[i].p_base, second.points()[i].p_base);
+  }
+}
+
+TEST(SeamChain, follows_the_part_into_any_frame) {
+  JointCloud cloud(paper());
+  const Eigen::Matrix3d turn =
+      (Eigen::AngleAxisd(2.1, Eigen::Vector3d(1.0, -2.0, 0.5).normalized())).toRotationMatrix();
+  const Eigen::Vector3d shift(700.0, 80.0, 260.0);
+  std::vector<Eigen::Vector3d> truth = cloud.curve(3600, 0.0);
+  for (Eigen::Vector3d& p : truth) {
+    p = turn * p + shift;
+  }
+  cloud.transform(turn, shift, 1.0);
+  Finder finder;
+
+  const SeamReport report = finder.find(cloud);
+
+  EXPECT_TRUE(report.weld()) << name(report.refusal);
+  EXPECT_LT(finder.worst_error(truth), 0.02);
+}
+
+TEST(SeamChain, a_hole_is_reported_where_it_is_and_bridged_as_interpolated) {
+  JointCloudConfig config;
+  config.unseen_start_rad = 1.0;
+  config.unseen_width_rad = 0.15 * 2.0 * std::numbers::pi;
+  const JointCloud cloud(config);
+  Finder finder;
+
+  const SeamReport report = finder.find(cloud);
+
+  EXPECT_TRUE(report.weld()) << name(report.refusal);
+  EXPECT_NEAR(report.quality.coverage, 0.85, 0.02);
+  ASSERT_EQ(report.num_holes, 1U);
+  EXPECT_NEAR(report.holes[0].width_rad, config.unseen_width_rad, 3.0 * kDegree);
+  EXPECT_LT(finder.worst_error(cloud.curve(3600, 0.0)), 0.02);
+}
+
+struct Bad {
+  const char* name;
+  JointCloudConfig config;
+  Refusal refusal;
+};
+
+TEST(SeamChain, what_cannot_be_welded_is_refused_by_name) {
+  JointCloudConfig half;
+  half.unseen_width_rad = std::numbers::pi;
+  JointCloudConfig no_nozzle;
+  no_nozzle.nozzle = false;
+  JointCloudConfig plate = no_nozzle;
+  plate.shell = JointCloudConfig::Shell::kPlane;
+  JointCloudConfig no_shell;
+  no_shell.shell_seen = false;
+  JointCloudConfig wide_hole;
+  wide_hole.unseen_width_rad = 0.19 * 2.0 * std::numbers::pi;
+  const std::array<Bad, 5> bad = {{{"half seen", half, Refusal::kLowCoverage},
+                                   {"no nozzle", no_nozzle, Refusal::kOneSurface},
+                                   {"plate", plate, Refusal::kCoplanar},
+                                   {"nozzle only", no_shell, Refusal::kOneSurface},
+                                   {"wide hole", wide_hole, Refusal::kLargeHole}}};
+  for (const Bad& one : bad) {
+    Finder finder;
+
+    const SeamReport report = finder.find(JointCloud(one.config));
+
+    EXPECT_EQ(report.refusal, one.refusal) << one.name << ": " << name(report.refusal);
+  }
+}
+
+TEST(SeamChain, an_empty_cloud_and_one_of_nan_are_refused_as_empty) {
+  Finder finder;
+  const std::vector<float> nan(100, std::numeric_limits<float>::quiet_NaN());
+
+  const SeamReport empty = finder.find(SeamInput{});
+  const SeamReport all_nan = finder.find(SeamInput{.cloud_base = {{nan, nan, nan}, {}, {}}});
+
+  EXPECT_EQ(empty.refusal, Refusal::kEmptyCloud);
+  EXPECT_EQ(all_nan.refusal, Refusal::kEmptyCloud);
+  EXPECT_EQ(all_nan.num_not_finite, 100U);
+}
+
+TEST(SeamChain, a_cloud_in_metres_is_named) {
+  JointCloud cloud{JointCloudConfig{}};
+  cloud.transform(Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero(), 1e-3);
+  Finder finder;
+
+  EXPECT_EQ(finder.find(cloud).refusal, Refusal::kNotMillimetres);
+}
+
+TEST(SeamChain, duplicate_and_wild_points_change_nothing_that_matters) {
+  JointCloud cloud(paper());
+  for (int i = 0; i < 20000; ++i) {
+    cloud.add({10.0, 10.0, -300.0});
+  }
+  cloud.add({1e30, 0.0, 0.0});
+  cloud.add({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0});
+  Finder finder;
+
+  const SeamReport report = finder.find(cloud);
+
+  EXPECT_TRUE(report.weld()) << name(report.refusal);
+  EXPECT_EQ(report.num_not_finite, 2U);
+  EXPECT_LT(finder.worst_error(cloud.curve(3600, 0.0)), 0.02);
+}
+
+TEST(SeamChain, a_region_without_the_seam_and_a_wrong_radius_are_named) {
+  const JointCloud cloud(paper());
+  SeamInput elsewhere{.cloud_base = cloud.view()};
+  elsewhere.region = RegionOfInterest{{500.0, 500.0, 500.0}, {600.0, 600.0, 600.0}};
+  SeamInput other_radius{.cloud_base = cloud.view()};
+  other_radius.expected_radius_mm = 30.0;
+  Finder finder;
+
+  EXPECT_EQ(finder.find(elsewhere).refusal, Refusal::kOutsideRegion);
+  EXPECT_EQ(finder.find(other_radius).refusal, Refusal::kOutsideRegion);
+}
+
+TEST(SeamChain, a_reference_curve_that_the_joint_does_not_have_is_named) {
+  const JointCloud cloud(paper());
+  for (const auto reference :
+       {seam::ReferenceCurve::kGapMiddle, seam::ReferenceCurve::kNozzleEdge}) {
+    Finder finder({.reference = reference});
+
+    EXPECT_EQ(finder.find(cloud).refusal, Refusal::kNoSuchReference);
+  }
+}
+
+TEST(SeamChain, a_full_output_is_named) {
+  const JointCloud cloud(paper());
+  test::ArenaOwner owner(SeamChain::bytes({}));
+  SeamChain chain = SeamChain::make({}, {}, owner.arena()).value();
+  std::array<seam::SeamPoint, 100> storage;
+  Buffer<seam::SeamPoint> out{std::span<seam::SeamPoint>(storage)};
+
+  EXPECT_EQ(chain.run(SeamInput{.cloud_base = cloud.view()}, out).refusal, Refusal::kFull);
+}
+
+TEST(SeamChain, run_does_not_allocate) {
+  const JointCloud cloud(paper());
+  Finder finder;
+  const test::AllocationCounter allocations;
+
+  (void)finder.find(cloud);
+
+  EXPECT_EQ(allocations.count(), 0U);
+}
+
+TEST(SeamChain, make_names_a_small_arena_and_a_bad_configuration) {
+  std::array<std::byte, 1000> little{};
+  Arena arena(little);
+  test::ArenaOwner owner(SeamChain::bytes({}));
+
+  EXPECT_EQ(SeamChain::make({}, {}, arena).error(), Errc::kOutOfMemory);
+  EXPECT_EQ(SeamChain::make({.point_spacing_mm = -1.0}, {}, owner.arena()).error(),
+            Errc::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace dseam::pipeline
