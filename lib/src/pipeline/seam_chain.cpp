@@ -59,7 +59,8 @@ std::size_t SeamChain::bytes(const Capacity& capacity) noexcept {
   const std::size_t cells = num_cells(capacity);
   return seam::CellMap::bytes(cells) + seam::SurfaceFinder::bytes(cells) +
          seam::RingFinder::bytes() + seam::JointFit::bytes(capacity.max_points) +
-         Arena::bytes<Workspace>(1) + Arena::bytes<float>(capacity.max_points / 2);
+         seam::EdgeScanner::bytes(capacity.max_edge_intervals) + Arena::bytes<Workspace>(1) +
+         Arena::bytes<float>(capacity.max_points / 2);
 }
 
 SeamChain::SeamChain(const Config& config, const Capacity& capacity, Arena& arena) noexcept
@@ -68,6 +69,7 @@ SeamChain::SeamChain(const Config& config, const Capacity& capacity, Arena& aren
       surfaces_(num_cells(capacity), arena),
       rings_(arena),
       fit_(capacity.max_points, arena),
+      edges_(capacity.max_edge_intervals, arena),
       work_(arena.take<Workspace>(1)),
       scratch_(arena.take<float>(capacity.max_points / 2)) {}
 
@@ -135,15 +137,17 @@ bool SeamChain::fit_joint(const SeamInput& in, const seam::Joint& joint,
   return true;
 }
 
-bool SeamChain::find_edge(const SeamInput& /*in*/, seam::SeamReport& report) noexcept {
-  edge_ = nullptr;
-  const bool needs_gap = config_.reference == seam::ReferenceCurve::kGapMiddle ||
-                         config_.reference == seam::ReferenceCurve::kNozzleEdge;
-  if (needs_gap && edge_ == nullptr) {
-    report.refusal = Refusal::kNoSuchReference;
-    return false;
-  }
-  return true;
+bool SeamChain::find_edge(const SeamInput& in, seam::SeamReport& report) noexcept {
+  seam::EdgeCurve& edge = work_[0].edge;
+  edges_.run(in.frames, in.views, fit_, report.noise_mm);
+  report.joint.num_edge_intervals = static_cast<std::uint32_t>(edges_.intervals().size());
+  const bool has_gap = edge.fit(edges_.intervals()) && seam::describe_gap(edge, report.joint);
+  edge_ = has_gap ? &edge : nullptr;
+  const bool has_reference = config_.reference == seam::ReferenceCurve::kShellEdge ||
+                             config_.reference == seam::ReferenceCurve::kRoot ||
+                             (config_.reference == seam::ReferenceCurve::kGapMiddle && has_gap);
+  report.refusal = has_reference ? Refusal::kNone : Refusal::kNoSuchReference;
+  return has_reference;
 }
 
 void SeamChain::build_curve(const SeamInput& /*in*/, seam::SeamReport& report,

@@ -4,11 +4,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace dseam::seam {
 namespace {
 
 constexpr double kNearMm = 6.0;
+constexpr double kMinGapMm = 0.25;
 
 double offset_of_axes(const Surface& nozzle, const Surface& shell) noexcept {
   const Eigen::Vector3d between = shell.point - nozzle.point;
@@ -58,6 +60,19 @@ void describe_joint(const JointFit& fit, JointReport& report) noexcept {
   report.nozzle_harmonics = std::max(0, fit.nozzle().residual.harmonics());
   report.num_shell_points = static_cast<std::uint32_t>(fit.shell().points.size());
   report.num_nozzle_points = static_cast<std::uint32_t>(fit.nozzle().points.size());
+}
+
+bool describe_gap(const EdgeCurve& edge, JointReport& report) noexcept {
+  constexpr int kAngles = 72;
+  report.mean_gap_mm = 0.0;
+  report.max_gap_mm = 0.0;
+  for (int i = 0; i < kAngles; ++i) {
+    const double gap = edge.at(2.0 * std::numbers::pi * i / kAngles);
+    report.mean_gap_mm += gap / kAngles;
+    report.max_gap_mm = std::max(report.max_gap_mm, gap);
+  }
+  report.has_gap = report.mean_gap_mm > kMinGapMm;
+  return report.has_gap;
 }
 
 void describe_residuals(const JointFit& fit, std::span<float> scratch,

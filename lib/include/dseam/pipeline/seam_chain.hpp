@@ -14,6 +14,7 @@
 #include "dseam/seam/coverage.hpp"
 #include "dseam/seam/curve_builder.hpp"
 #include "dseam/seam/edge_curve.hpp"
+#include "dseam/seam/edge_scanner.hpp"
 #include "dseam/seam/joint_fit.hpp"
 #include "dseam/seam/ring_finder.hpp"
 #include "dseam/seam/seam_curve.hpp"
@@ -90,6 +91,7 @@ class SeamChain {
   seam::SurfaceFinder surfaces_;
   seam::RingFinder rings_;
   seam::JointFit fit_;
+  seam::EdgeScanner edges_;
   std::span<Workspace> work_;
   std::span<float> scratch_;
   const seam::EdgeCurve* edge_ = nullptr;

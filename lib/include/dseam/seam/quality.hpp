@@ -18,6 +18,8 @@ struct QualityLimits {
 
 /// Radii, angle and offset of the axes, and what the fit used.
 void describe_joint(const JointFit& fit, JointReport& report) noexcept;
+/// Mean and largest gap; false where it is too small to be one.
+bool describe_gap(const EdgeCurve& edge, JointReport& report) noexcept;
 /// Residuals of the points within 6 mm of the joint: those of the shell are normal ones, those of
 /// the nozzle lateral.
 void describe_residuals(const JointFit& fit, std::span<float> scratch,

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "dseam/base/arena.hpp"
+#include "dseam/base/buffer.hpp"
+#include "dseam/depth/depth_image.hpp"
+#include "dseam/seam/edge_curve.hpp"
+#include "dseam/seam/joint_fit.hpp"
+#include "dseam/splice/spliced_view.hpp"
+
+namespace dseam::seam {
+
+/// Looks in the raw frames for places where the shell ends beside the nozzle and something behind
+/// it is seen: the edge of a gap.
+///
+/// Rows and columns are walked. A pixel counts as behind only when its neighbour goes on from it,
+/// so that a flying pixel is never an end of an interval; a dropped pixel only makes one wider.
+/// A dead band shows nothing behind the shell and therefore is no gap.
+///
+/// Memory:  `bytes()` from the arena.
+/// Time:    O(pixels near the joint).
+class EdgeScanner {
+ public:
+  static constexpr std::size_t kMaxLine = 4096;  ///< Longer rows are cut off.
+
+  [[nodiscard]] static constexpr std::size_t bytes(std::size_t max_intervals) noexcept {
+    return Arena::bytes<EdgeInterval>(max_intervals) + Arena::bytes<Pixel>(kMaxLine);
+  }
+  EdgeScanner() = default;
+  EdgeScanner(std::size_t max_intervals, Arena& arena) noexcept
+      : intervals_(arena.take<EdgeInterval>(max_intervals)), line_(arena.take<Pixel>(kMaxLine)) {}
+
+  /// `noise_mm` is that of a single pixel.
+  void run(std::span<const depth::DepthImage> frames, std::span<const splice::SplicedView> views,
+           const JointFit& fit, double noise_mm) noexcept;
+  [[nodiscard]] std::span<const EdgeInterval> intervals() const noexcept {
+    return intervals_.view();
+  }
+
+ private:
+  enum class Kind : std::uint8_t { kNothing, kShell, kBehind, kOther };
+  struct Pixel {
+    Kind kind = Kind::kNothing;
+    float z_mm = 0.0F;
+  };
+  struct Window {
+    std::uint32_t u0 = 0, v0 = 0, u1 = 0, v1 = 0;  // The last ones are excluded.
+  };
+  struct Step {
+    std::uint32_t u, v;
+    bool along_u;
+  };
+
+  [[nodiscard]] Window window_of(const depth::Intrinsics& k) const noexcept;
+  [[nodiscard]] Pixel classify(const depth::DepthImage& frame, std::uint32_t u,
+                               std::uint32_t v) const noexcept;
+  void scan_line(const depth::DepthImage& frame, const Step& start, std::size_t count) noexcept;
+  void try_pair(const depth::DepthImage& frame, const Step& start, std::size_t shell,
+                std::size_t behind, std::size_t count) noexcept;
+  [[nodiscard]] std::optional<Eigen::Vector3d> on_shell(const depth::DepthImage& frame,
+                                                        const Step& start,
+                                                        std::size_t i) const noexcept;
+
+  const JointFit* fit_ = nullptr;
+  geometry::RigidTransform T_base_camera_;
+  double margin_mm_ = 0.1;
+  Buffer<EdgeInterval> intervals_;
+  std::span<Pixel> line_;
+};
+
+}  // namespace dseam::seam

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dseam/seam/edge_scanner.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace dseam::seam {
+namespace {
+
+constexpr double kReachMm = 8.0;   // Widest gap, plus a few pixels of shell.
+constexpr double kInsideMm = 1.0;  // Deeper than this in the nozzle is its bore.
+constexpr double kBehindMm = 60.0;
+constexpr double kMarginMm = 0.1;
+constexpr double kMarginNoises = 4.0;
+constexpr double kGoesOnMm = 1.0;  // A surface's neighbouring pixels differ by less.
+constexpr std::size_t kMaxApart = 6;
+constexpr std::uint32_t kStride = 2;
+
+Eigen::Vector3d ray_of(const depth::Intrinsics& k, double u, double v) noexcept {
+  return {(u - k.cx) / k.fx, (v - k.cy) / k.fy, 1.0};
+}
+
+}  // namespace
+
+void EdgeScanner::run(std::span<const depth::DepthImage> frames,
+                      std::span<const splice::SplicedView> views, const JointFit& fit,
+                      double noise_mm) noexcept {
+  fit_ = &fit;
+  margin_mm_ = kMarginMm + kMarginNoises * noise_mm;
+  intervals_.clear();
+  for (std::size_t i = 0; i < std::min(frames.size(), views.size()); ++i) {
+    if (views[i].state != splice::ViewState::kUsed) {
+      continue;
+    }
+    T_base_camera_ = views[i].T_base_camera;
+    const Window w = window_of(frames[i].intrinsics);
+    for (std::uint32_t v = w.v0; v < w.v1; v += kStride) {
+      scan_line(frames[i], {w.u0, v, true}, std::min<std::size_t>(w.u1 - w.u0, kMaxLine));
+    }
+    for (std::uint32_t u = w.u0; u < w.u1; u += kStride) {
+      scan_line(frames[i], {u, w.v0, false}, std::min<std::size_t>(w.v1 - w.v0, kMaxLine));
+    }
+  }
+}
+
+// The part of the image in which the joint and the shell around it lie.
+EdgeScanner::Window EdgeScanner::window_of(const depth::Intrinsics& k) const noexcept {
+  constexpr int kAngles = 72;
+  const geometry::RigidTransform T_camera_base = T_base_camera_.inverse();
+  double u0 = k.width;
+  double v0 = k.height;
+  double u1 = 0.0;
+  double v1 = 0.0;
+  for (int i = 0; i < kAngles; ++i) {
+    const double phi = 2.0 * std::numbers::pi * i / kAngles;
+    const auto root = root_at(fit_->joint(), fit_->frame(), phi);
+    if (!root) {
+      continue;
+    }
+    const Eigen::Vector3d n = outward_normal(fit_->joint().nozzle, *root);
+    const Eigen::Vector3d p = T_camera_base * (*root + kReachMm * n);
+    if (p.z() > 1.0) {
+      u0 = std::min(u0, k.fx * p.x() / p.z() + k.cx);
+      u1 = std::max(u1, k.fx * p.x() / p.z() + k.cx);
+      v0 = std::min(v0, k.fy * p.y() / p.z() + k.cy);
+      v1 = std::max(v1, k.fy * p.y() / p.z() + k.cy);
+    }
+  }
+  const auto clipped = [](double value, std::uint32_t size) {
+    return static_cast<std::uint32_t>(std::clamp(value, 0.0, static_cast<double>(size)));
+  };
+  return {clipped(u0, k.width), clipped(v0, k.height), clipped(u1 + 1.0, k.width),
+          clipped(v1 + 1.0, k.height)};
+}
+
+EdgeScanner::Pixel EdgeScanner::classify(const depth::DepthImage& frame, std::uint32_t u,
+                                         std::uint32_t v) const noexcept {
+  const double z = frame.count_at(u, v) * frame.mm_per_count;
+  if (!(z > 0.0)) {
+    return {};
+  }
+  const Eigen::Vector3d p = T_base_camera_ * (z * ray_of(frame.intrinsics, u, v));
+  const double outside = signed_distance(fit_->joint().nozzle, p);
+  const double rough = shell_distance(fit_->joint(), p);
+  const auto z_mm = static_cast<float>(z);
+  if (!(outside > -kInsideMm && outside < kReachMm && rough < 2.0 * margin_mm_ + 1.0 &&
+        rough > -kBehindMm) ||
+      shell_normal(fit_->joint(), p).dot(fit_->joint().nozzle.axis) < 0.0) {
+    return {Kind::kOther, z_mm};
+  }
+  const double above = rough < -2.0 ? rough : fit_->above_shell(p);
+  if (above > margin_mm_) {
+    return {Kind::kOther, z_mm};
+  }
+  return {above > -margin_mm_ ? Kind::kShell : Kind::kBehind, z_mm};
+}
+
+void EdgeScanner::scan_line(const depth::DepthImage& frame, const Step& start,
+                            std::size_t count) noexcept {
+  constexpr std::size_t kNone = SIZE_MAX;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto step = static_cast<std::uint32_t>(i);
+    line_[i] =
+        classify(frame, start.u + (start.along_u ? step : 0), start.v + (start.along_u ? 0 : step));
+  }
+  std::size_t last = kNone;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Kind kind = line_[i].kind;
+    if (kind == Kind::kNothing) {
+      continue;
+    }
+    if (kind == Kind::kOther) {
+      last = kNone;
+      continue;
+    }
+    if (last != kNone && line_[last].kind != kind && i - last <= kMaxApart) {
+      kind == Kind::kShell ? try_pair(frame, start, i, last, count)
+                           : try_pair(frame, start, last, i, count);
+    }
+    last = i;
+  }
+}
+
+// The pixel's place on the fitted shell, whether the shell is there or not.
+std::optional<Eigen::Vector3d> EdgeScanner::on_shell(const depth::DepthImage& frame,
+                                                     const Step& start,
+                                                     std::size_t i) const noexcept {
+  const double u = start.u + (start.along_u ? static_cast<double>(i) : 0.0);
+  const double v = start.v + (start.along_u ? 0.0 : static_cast<double>(i));
+  const Eigen::Vector3d direction = T_base_camera_.rotation * ray_of(frame.intrinsics, u, v);
+  Eigen::Vector3d p = T_base_camera_.translation_mm + double{line_[i].z_mm} * direction;
+  for (int k = 0; k < 4; ++k) {
+    const double slope = shell_normal(fit_->joint(), p).dot(direction);
+    if (!(slope < -0.05 * direction.norm())) {
+      return std::nullopt;
+    }
+    p -= fit_->above_shell(p) / slope * direction;
+  }
+  return p;
+}
+
+void EdgeScanner::try_pair(const depth::DepthImage& frame, const Step& start, std::size_t shell,
+                           std::size_t behind, std::size_t count) noexcept {
+  // A flying pixel hangs between two depths: the first behind whose neighbour goes on is sure.
+  const bool forward = behind > shell;
+  std::size_t sure = behind;
+  for (std::size_t tries = 0;; ++tries) {
+    const std::size_t next = forward ? sure + 1 : sure - 1;
+    if (tries == kMaxApart || next >= count || line_[next].kind == Kind::kNothing) {
+      return;
+    }
+    if (std::abs(line_[next].z_mm - line_[sure].z_mm) < static_cast<float>(kGoesOnMm)) {
+      break;
+    }
+    if (line_[next].kind != Kind::kBehind) {
+      return;
+    }
+    sure = next;
+  }
+  const auto low = on_shell(frame, start, sure);
+  const auto high = on_shell(frame, start, shell);
+  if (!low || !high) {
+    return;
+  }
+  const double low_mm = fit_->outside_nozzle(*low);
+  const double high_mm = fit_->outside_nozzle(*high);
+  if (low_mm < high_mm && low_mm > -kInsideMm && high_mm < kReachMm) {
+    const double phi = angle_about(fit_->joint().nozzle, fit_->frame(), 0.5 * (*low + *high));
+    (void)intervals_.append({phi, low_mm, high_mm});
+  }
+}
+
+}  // namespace dseam::seam
