@@ -28,12 +28,19 @@ PointStore::Take PointStore::take(const Point& point, const Frame& frame) noexce
   received_until_us_ = point.set_point.t_us;
   slot(received_) = {point.set_point, received_crc_};
   ++received_;
-  return Take::kStored;
+  const bool awaited = received_ == waiting_count_;
+  return awaited && confirm(waiting_count_, waiting_crc_) == Confirm::kMismatch ? Take::kBadMark
+                                                                                : Take::kStored;
 }
 
 PointStore::Confirm PointStore::confirm(std::uint32_t count, std::uint32_t crc) noexcept {
-  if (count <= verified_ || count > received_) {
+  if (count <= verified_ || count > total_) {
     return Confirm::kNothingNew;
+  }
+  if (count > received_) {
+    waiting_count_ = count;
+    waiting_crc_ = crc;
+    return Confirm::kWaiting;
   }
   const Slot& last = slot(count - 1);
   if (last.crc == crc) {
@@ -42,6 +49,7 @@ PointStore::Confirm PointStore::confirm(std::uint32_t count, std::uint32_t crc) 
     verified_until_us_ = last.point.t_us;
     return Confirm::kConfirmed;
   }
+  waiting_count_ = 0;
   received_ = verified_;
   received_crc_ = verified_crc_;
   received_until_us_ = verified_until_us_;

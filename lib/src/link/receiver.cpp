@@ -237,6 +237,9 @@ void Receiver::on_point(const Frame& frame) noexcept {
       return ask_again(NackReason::kGap);
     case PointStore::Take::kNoRoom:
       return ask_again(NackReason::kNoRoom);
+    case PointStore::Take::kBadMark:
+      ++report_.bad_marks;
+      return ask_again(NackReason::kBadMark);
     case PointStore::Take::kContradiction:
       ++report_.malformed;
       return ask_again(NackReason::kGap);

@@ -17,7 +17,7 @@ bool sensible(const Sender::Config& config) noexcept {
          config.armed_period_ns > 0 && config.armed_period_ns < config.silence_limit_ns &&
          config.idle_period_ns > 0 && config.hello_period_ns > 0 && config.order_timeout_ns > 0 &&
          config.resend_after_ns > 0 && config.mark_every > 0 && config.points_per_poll > 0 &&
-         config.addressing.fits_11_bits();
+         config.window_points > 0 && config.addressing.fits_11_bits();
 }
 
 bool at_rest(RobotState state) noexcept {

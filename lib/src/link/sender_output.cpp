@@ -125,7 +125,8 @@ void Sender::send_trajectory(std::int64_t now_ns, Buffer<Frame>& out) noexcept {
     return;
   }
   resend_if_stuck(now_ns, out);
-  for (std::uint32_t i = 0; i < config_.points_per_poll && stream_.may_send(); ++i) {
+  for (std::uint32_t i = 0; i < config_.points_per_poll && stream_.may_send(config_.window_points);
+       ++i) {
     if (!send_point(out)) {
       return;
     }

@@ -22,6 +22,16 @@ struct CanFrame {
   std::int64_t stamp_ns = 0;  ///< Received frames: monotonic time of arrival.
 };
 
+/// Whether CAN has such a frame: FD knows seven lengths above 8, identifiers have 11 or 29 bits.
+[[nodiscard]] constexpr bool is_can_frame(const CanFrame& frame) noexcept {
+  constexpr std::array<std::uint8_t, 7> kLongSizes = {12, 16, 20, 24, 32, 48, 64};
+  bool size = frame.size_bytes <= 8;
+  for (const std::uint8_t bytes : kLongSizes) {
+    size = size || (frame.fd && frame.size_bytes == bytes);
+  }
+  return size && frame.id < (frame.extended ? 0x2000'0000U : 0x800U);
+}
+
 /// The controller's state as CAN defines it, and whether the interface is there at all.
 enum class BusState : std::uint8_t { kErrorActive, kErrorWarning, kErrorPassive, kBusOff, kDown };
 
@@ -49,9 +59,9 @@ class CanBus {
   /// Queues one frame; never waits.
   ///
   /// Errors:  kQueueFull: try again later. kDisconnected: bus-off, down or gone; reopen.
-  ///          kInvalidArgument: a size that CAN does not have.
+  ///          kInvalidArgument: a frame that CAN does not have. kUnsupported: FD on a classic bus.
   Result<> send(const CanFrame& frame) noexcept {
-    return frame.size_bytes <= CanFrame::kMaxSizeBytes ? do_send(frame) : Errc::kInvalidArgument;
+    return is_can_frame(frame) ? do_send(frame) : Errc::kInvalidArgument;
   }
   /// Takes the oldest received frame, waiting at most `timeout`; zero polls.
   ///

@@ -19,17 +19,18 @@ class PointStore {
     trajectory::SetPoint point;
     std::uint32_t crc = 0;  ///< CRC-32 of the trajectory up to and with this point.
   };
-  enum class Take : std::uint8_t { kStored, kRepeated, kGap, kNoRoom, kContradiction };
-  enum class Confirm : std::uint8_t { kConfirmed, kNothingNew, kMismatch };
+  enum class Take : std::uint8_t { kStored, kRepeated, kGap, kNoRoom, kContradiction, kBadMark };
+  enum class Confirm : std::uint8_t { kConfirmed, kWaiting, kNothingNew, kMismatch };
 
   explicit PointStore(std::span<Slot> slots) noexcept : slots_(slots) {}
 
   /// Forgets everything; `total` points will come.
   void begin(std::uint32_t total) noexcept;
   /// Stores `point` when it is the next one. kContradiction: its time does not rise, or it is one
-  /// point too many.
+  /// point too many. kBadMark: the mark that waited for it did not fit.
   Take take(const Point& point, const Frame& frame) noexcept;
-  /// A mismatch throws away every point that is not confirmed.
+  /// A mark is more urgent on the bus than the points it covers: one that came first waits for
+  /// them. A mismatch throws away every point that is not confirmed.
   Confirm confirm(std::uint32_t count, std::uint32_t crc) noexcept;
   /// The next point to execute, or nullptr when no confirmed one is left.
   [[nodiscard]] const trajectory::SetPoint* front() const noexcept;
@@ -61,6 +62,8 @@ class PointStore {
   std::uint32_t verified_crc_ = 0;
   std::uint32_t received_until_us_ = 0;
   std::uint32_t verified_until_us_ = 0;
+  std::uint32_t waiting_count_ = 0;  ///< Of the newest mark that came before its points.
+  std::uint32_t waiting_crc_ = 0;
 };
 
 }  // namespace dseam::link

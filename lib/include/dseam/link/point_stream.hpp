@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "dseam/link/frame.hpp"
@@ -36,8 +37,9 @@ class PointStream {
   /// The point at next() left: takes it into the CRC.
   void sent(const Frame& payload) noexcept;
 
-  [[nodiscard]] bool may_send() const noexcept {
-    return next_.count < size() && next_.count < acknowledged_.count + credit_;
+  /// Whether the robot has room, and less than `window` points are under way.
+  [[nodiscard]] bool may_send(std::uint32_t window) const noexcept {
+    return next_.count < size() && next_.count - acknowledged_.count < std::min(credit_, window);
   }
   [[nodiscard]] std::uint32_t size() const noexcept {
     return static_cast<std::uint32_t>(points_.size());
