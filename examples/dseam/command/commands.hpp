@@ -8,6 +8,8 @@
 namespace dseam::program {
 
 // Each adds its sub-command, which stores in `invocation.run` what it does.
+void add_calibrate(CLI::App& app, Invocation& invocation);
 void add_config(CLI::App& app, Invocation& invocation);
+void add_extract(CLI::App& app, Invocation& invocation);
 
 }  // namespace dseam::program

@@ -8,7 +8,11 @@ constexpr double kPi = 3.14159265358979323846;
 
 std::vector<Key> job_keys(Settings& s) {
   return {{"job", "method", choice(s.method, {"dseam", "paper"}),
-           "The chain of stages: this project's, or the paper's in the paper's order"}};
+           "The chain of stages: this project's, or the paper's in the paper's order"},
+          {"job", "max_points", &s.max_points, "More points in the clouds of a command are refused",
+           "points", 1000, 16e6},
+          {"job", "max_seam_points", &s.max_seam_points, "Room for the points of seam.csv",
+           "points", 64, 1e6}};
 }
 
 std::vector<Key> seam_keys(pipeline::SeamChain::Config& c) {
@@ -32,11 +36,31 @@ std::vector<Key> seam_keys(pipeline::SeamChain::Config& c) {
   };
 }
 
+std::vector<Key> hand_eye_keys(calibration::HandEyeConfig& c) {
+  return {
+      {"hand_eye", "flange_sigma_mm", &c.flange_sigma_mm, "Noise of the robot's reported position",
+       "mm", 1e-6, 10},
+      {"hand_eye", "flange_sigma_rad", &c.flange_sigma_rad,
+       "Noise of the robot's reported orientation", "rad", 1e-8, 0.1},
+      {"hand_eye", "target_sigma_mm", &c.target_sigma_mm, "Noise of the target's measured position",
+       "mm", 1e-6, 10},
+      {"hand_eye", "target_sigma_rad", &c.target_sigma_rad,
+       "Noise of the target's measured orientation", "rad", 1e-8, 0.1},
+      {"hand_eye", "min_spread_rad", &c.min_spread_rad,
+       "Refused when the flange turned less about its second axis", "rad", 0, kPi},
+      {"hand_eye", "max_residual_ratio", &c.max_residual_ratio,
+       "Residuals over the stated noise from which on it warns", "", 1, 1e6},
+      {"hand_eye", "working_distance_mm", &c.working_distance_mm,
+       "From the camera to the work, where the expected error is stated", "mm", 1, 10000},
+  };
+}
+
 }  // namespace
 
 std::vector<Key> keys_of(Settings& settings) {
   std::vector<Key> keys;
-  for (const std::vector<Key>& part : {job_keys(settings), seam_keys(settings.seam)}) {
+  for (const std::vector<Key>& part :
+       {job_keys(settings), seam_keys(settings.seam), hand_eye_keys(settings.hand_eye)}) {
     keys.insert(keys.end(), part.begin(), part.end());
   }
   return keys;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "config/key.hpp"
+#include "dseam/calibration/hand_eye.hpp"
 #include "dseam/pipeline/seam_chain.hpp"
 
 namespace dseam::program {
@@ -13,7 +14,10 @@ enum class Method : std::uint8_t { kDseam, kPaper };
 /// Everything that can be configured, in the structs that the stages are made from.
 struct Settings {
   Method method = Method::kDseam;
+  std::uint32_t max_points = 4'000'000;
+  std::uint32_t max_seam_points = 16384;
   pipeline::SeamChain::Config seam;
+  calibration::HandEyeConfig hand_eye;
 };
 
 /// The table of all keys, bound to `settings`, which must outlive it.

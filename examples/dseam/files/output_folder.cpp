@@ -3,6 +3,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -14,6 +16,9 @@ namespace dseam::program {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::array kProducts{"seam.csv",    "path.csv",    "poses.json",    "merged.ply",
+                               "report.json", "report.html", "hand_eye.json", "can.log"};
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
   throw Failure(ExitCode::kUsage, path.string() + ": cannot be written: " + what);
@@ -66,6 +71,12 @@ void OutputFolder::commit() {
     fs::rename(temporary(name), path(name), error);
     if (error) {
       fail(path(name), error.message());
+    }
+  }
+  for (const char* name : kProducts) {
+    std::error_code ignored;
+    if (std::find(pending_.begin(), pending_.end(), name) == pending_.end()) {
+      fs::remove(path(name), ignored);  // Of an earlier run: it would contradict this one.
     }
   }
   pending_.clear();

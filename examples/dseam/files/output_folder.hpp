@@ -27,6 +27,8 @@ class OutputFolder {
   void write(const std::string& name, const Writer& writer);
   /// The temporary name of a file that something else fills until commit().
   [[nodiscard]] std::filesystem::path reserve(const std::string& name);
+  /// Renames everything that was written, and removes the program's other products from the
+  /// folder: those are of an earlier run.
   void commit();
 
   [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_ / name; }

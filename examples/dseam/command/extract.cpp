@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "command/commands.hpp"
+#include "input/cloud_reader.hpp"
+#include "job/lent_memory.hpp"
+#include "job/products.hpp"
+#include "job/stopwatch.hpp"
+#include "job/verdict.hpp"
+
+namespace dseam::program {
+namespace {
+
+struct Options {
+  std::vector<std::filesystem::path> clouds;
+  std::filesystem::path out;
+};
+
+void append(const LoadedCloud& part, LoadedCloud& whole) {
+  whole.x.insert(whole.x.end(), part.x.begin(), part.x.end());
+  whole.y.insert(whole.y.end(), part.y.begin(), part.y.end());
+  whole.z.insert(whole.z.end(), part.z.begin(), part.z.end());
+  whole.num_not_finite += part.num_not_finite;
+}
+
+LoadedCloud read_all(const Options& options, double mm_per_unit, std::size_t max_points) {
+  LoadedCloud whole;
+  for (const std::filesystem::path& file : options.clouds) {
+    append(read_cloud(file, mm_per_unit), whole);
+    if (whole.size() > max_points) {
+      throw Failure(ExitCode::kInput, file.string() + ": " + std::to_string(whole.size()) +
+                                          " points so far, the workspace holds " +
+                                          std::to_string(max_points) + " (job.max_points)");
+    }
+  }
+  return whole;
+}
+
+std::string names_of(const std::vector<std::filesystem::path>& files) {
+  std::string names;
+  for (const std::filesystem::path& file : files) {
+    names += (names.empty() ? "" : ", ") + file.string();
+  }
+  return names;
+}
+
+ExitCode run(const Options& options, const Invocation& invocation) {
+  Settings settings;
+  invocation.configure(settings);
+  OutputFolder folder(options.out);
+  Stopwatch watch;
+  const LoadedCloud cloud = read_all(options, invocation.mm_per_unit(), settings.max_points);
+
+  JobReport job;
+  job.command = "extract";
+  job.input = names_of(options.clouds);
+  job.stages.push_back({"read",
+                        watch.lap_ms(),
+                        {{"points", static_cast<double>(cloud.size())},
+                         {"not finite", static_cast<double>(cloud.num_not_finite)}}});
+  const pipeline::SeamChain::Capacity capacity{.max_points =
+                                                   std::max<std::size_t>(1024, cloud.size())};
+  LentMemory memory(pipeline::SeamChain::bytes(capacity) +
+                    Arena::bytes<seam::SeamPoint>(settings.max_seam_points));
+  auto chain = pipeline::SeamChain::make(settings.seam, capacity, memory.arena());
+  if (!chain.ok()) {
+    throw Failure(ExitCode::kUsage,
+                  std::string("the configured seam stage: ") + name(chain.error()));
+  }
+  Buffer<seam::SeamPoint> seam(memory.arena().take<seam::SeamPoint>(settings.max_seam_points));
+
+  job.cloud_base.points = cloud.view();
+  job.seam_report = chain.value().run({.cloud_base = job.cloud_base}, seam);
+  job.stages.push_back({"seam", watch.lap_ms(), {{"points", static_cast<double>(seam.size())}}});
+  job.seam_base = view_of(seam.view(), job.seam_report);
+  job.weld = job.seam_report.weld();
+  job.reason = reason_of(job.seam_report, settings.seam);
+  write_products(job, folder);
+  print_summary(job, folder);
+  return exit_code_of(job.seam_report);
+}
+
+}  // namespace
+
+void add_extract(CLI::App& app, Invocation& invocation) {
+  auto* command = app.add_subcommand("extract", "seam of clouds that are already in one frame");
+  auto options = std::make_shared<Options>();
+  command->add_option("cloud", options->clouds, "PLY or PCD files")->required();
+  command->add_option("--out", options->out, "folder for the results")->required();
+  command->callback([options, &invocation] {
+    invocation.run = [options](const Invocation& invoked) { return run(*options, invoked); };
+  });
+}
+
+}  // namespace dseam::program

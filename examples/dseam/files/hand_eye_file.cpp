@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "files/hand_eye_file.hpp"
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "dseam/link/crc.hpp"
+#include "failure.hpp"
+#include "input/json_reader.hpp"
+
+namespace dseam::program {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string utc_now() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm parts = {};
+  gmtime_r(&now, &parts);
+  std::array<char, 32> text{};
+  const std::size_t size = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return {text.data(), size};
+}
+
+/// CRC-32 over the compact text without the checksum, keys in the order of the alphabet.
+std::string checksum_of(nlohmann::json content) {
+  content.erase("checksum");
+  const std::string text = content.dump();
+  std::array<char, 16> digits{};
+  const int size = std::snprintf(digits.data(), digits.size(), "%08x",
+                                 link::crc32(std::as_bytes(std::span(text))));
+  return {digits.data(), static_cast<std::size_t>(size)};
+}
+
+}  // namespace
+
+Json hand_eye_json(const calibration::HandEye& calibrated) {
+  Json file = {
+      {"T_flange_camera", geometry::to_row_major(calibrated.T_flange_camera)},
+      {"covariance", std::span<const double>(calibrated.covariance.data(), 36)},
+      {"units", {{"length", "mm"}, {"angle", "rad"}}},
+      {"date", utc_now()},
+      {"residuals",
+       {{"rms_mm", calibrated.rms_mm},
+        {"rms_rad", calibrated.rms_rad},
+        {"ratio_to_noise", calibrated.residual_ratio}}},
+      {"expected_error",
+       {{"position_mm", calibrated.expected_mm},
+        {"rotation_rad", calibrated.expected_rad},
+        {"tool_mm", calibrated.expected_tool_mm}}},
+      {"leave_one_out",
+       {{"tool_mm", calibrated.leave_one_out_mm}, {"worst_station", calibrated.worst_station}}},
+      {"verdict", calibration::name(calibrated.verdict)}};
+  file["checksum"] = checksum_of(nlohmann::json::parse(file.dump()));
+  return file;
+}
+
+HandEyeFile read_hand_eye(const std::filesystem::path& file) {
+  const nlohmann::json content = read_json(file);
+  const auto fail = [&file](const char* fault) {
+    throw Failure(ExitCode::kInput, file.string() + ": " + fault);
+  };
+  if (!content.is_object() || content.value("checksum", "") != checksum_of(content)) {
+    fail("damaged: its checksum does not match");
+  }
+  const nlohmann::json units = content.value("units", nlohmann::json::object());
+  if (units.value("length", "") != "mm" || units.value("angle", "") != "rad") {
+    fail("its units are not mm and rad");
+  }
+  const nlohmann::json expected = content.value("expected_error", nlohmann::json::object());
+  return {rigid_at(content, "T_flange_camera", file.string()), expected.value("tool_mm", 0.0)};
+}
+
+}  // namespace dseam::program

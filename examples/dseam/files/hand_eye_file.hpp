@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+
+#include "dseam/calibration/hand_eye.hpp"
+
+namespace dseam::program {
+
+/// hand_eye.json: the calibration with its covariance, residuals, date, units and a checksum over
+/// all of it. docs/formats.md has the schema.
+[[nodiscard]] nlohmann::ordered_json hand_eye_json(const calibration::HandEye& calibrated);
+
+/// What a job needs of a hand-eye file.
+struct HandEyeFile {
+  geometry::RigidTransform T_flange_camera;
+  double expected_tool_mm = 0.0;
+};
+
+/// Errors:  throws Failure(kInput): unreadable, a checksum that does not match, other units than mm
+///          and rad, not rigid.
+[[nodiscard]] HandEyeFile read_hand_eye(const std::filesystem::path& file);
+
+}  // namespace dseam::program
