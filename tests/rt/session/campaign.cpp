@@ -60,7 +60,8 @@ SeedResult run_seed(std::uint64_t seed, std::uint32_t faults) {
   const auto stuck = [&](const char* where) {
     if (result.breach.empty()) {
       result.breach = std::string("stuck ") + where + " in " + name(cell.session.state()) +
-                      ", fault " + name(cell.session.fault());
+                      ", fault " + name(cell.session.fault()) + ", link " +
+                      name(cell.sender().fault()) + ", robot " + name(cell.robot().fault());
     }
   };
   while (result.faults < faults && result.breach.empty()) {

@@ -7,6 +7,7 @@ namespace dseam::test {
 namespace {
 
 constexpr std::int64_t kWireNs = 150'000;
+constexpr std::size_t kInbox = 512;
 
 void deliver(auto& way, auto& inbox, std::int64_t now_ns) {
   while (!way.empty() && way.front().due_ns <= now_ns) {
@@ -26,6 +27,10 @@ void VirtualBus::advance(std::int64_t now_ns) {
     foreign.id = 0x10;
     foreign.size_bytes = 8;
     at_host_.push_back(foreign);
+  }
+  while (at_host_.size() > kInbox) {  // Like a socket's buffer: what comes too late is lost.
+    at_host_.pop_back();
+    ++overflow_;
   }
 }
 
@@ -91,6 +96,7 @@ Result<> VirtualBus::do_purge() noexcept {
 hal::BusHealth VirtualBus::do_health() const noexcept {
   hal::BusHealth health;
   health.state = trouble.state;
+  health.receive_overflow = overflow_;
   return health;
 }
 

@@ -52,6 +52,7 @@ class VirtualBus final : public hal::CanBus {
 
   Pcg32 random_;
   std::int64_t now_ns_ = 0;
+  std::uint64_t overflow_ = 0;
   std::deque<Flying> to_robot_;
   std::deque<Flying> to_host_;
   std::deque<hal::CanFrame> at_robot_;

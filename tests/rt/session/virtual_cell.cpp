@@ -174,11 +174,10 @@ void VirtualCell::check() {
   const bool blocked = bus.trouble.blocked || bus.trouble.state >= hal::BusState::kBusOff;
   const std::uint32_t abort_id = link::Addressing{}.id_of(link::MessageId::kAbort);
   const std::uint32_t point_id = link::Addressing{}.id_of(link::MessageId::kPoint);
-  const bool greeted = robot_.session() != 0 && sender_.peer().session == robot_.session();
   if (static_cast<std::uint8_t>(session.state()) >= rt::kNumSessionStates) {
     broke("a state outside the table");
   }
-  if (new_fault && greeted && !blocked && sender_.fault() == link::Fault::kAborted &&
+  if (new_fault && armed_before_ && !blocked &&
       (bus.sent_this_cycle.empty() || bus.sent_this_cycle.front().id != abort_id)) {
     broke("arc-off was not the first frame of the cycle that found the fault");
   }
@@ -199,6 +198,7 @@ void VirtualCell::check() {
     broke("the arc burnt on after the fault");
   }
   fault_before_ = fault;
+  armed_before_ = sender_.armed();
   mix(static_cast<std::uint64_t>(session.state()) | static_cast<std::uint64_t>(fault) << 8U |
       static_cast<std::uint64_t>(robot_.state()) << 16U | (robot_.arc_on() ? 1ULL << 24U : 0U) |
       static_cast<std::uint64_t>(bus.sent_this_cycle.size()) << 32U);

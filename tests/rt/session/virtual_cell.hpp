@@ -94,6 +94,7 @@ class VirtualCell {
   std::size_t executed_ = 0;
   std::uint16_t trajectory_ = 0;
   std::int64_t arc_on_ns_ = 0;
+  bool armed_before_ = false;
   rt::Fault fault_before_ = rt::Fault::kNone;
   std::int64_t tripped_ns_ = 0;
   std::uint64_t digest_ = 0xCBF29CE484222325ULL;
