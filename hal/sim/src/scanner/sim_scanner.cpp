@@ -118,13 +118,13 @@ FrameLease SimScanner::expose(std::uint32_t slot) noexcept {
 void SimScanner::report_pose(std::size_t view, std::int64_t captured_ns) noexcept {
   const std::int64_t half_dwell_ns = std::min<std::int64_t>(options_.period_ns / 4, 20'000'000);
   StampedPose pose;
-  pose.stamp_ns = captured_ns - half_dwell_ns;
+  pose.stamp_ns = captured_ns;
   pose.of = options_.T_flange_camera ? PoseOf::kFlange : PoseOf::kCamera;
   pose.T_base_reported = views_[view].T_base_camera_reported;
   if (options_.T_flange_camera) {
     pose.T_base_reported = pose.T_base_reported * options_.T_flange_camera->inverse();
   }
-  (void)robot_.stand(pose, captured_ns + half_dwell_ns);  // Frames are a period apart.
+  (void)robot_.stand(pose, half_dwell_ns);  // Frames are a period apart.
 }
 
 }  // namespace dseam::hal::sim

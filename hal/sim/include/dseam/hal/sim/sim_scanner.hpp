@@ -11,8 +11,8 @@
 #include "dseam/hal/clock.hpp"
 #include "dseam/hal/depth_camera.hpp"
 #include "dseam/hal/sim/cell.hpp"
-#include "dseam/hal/sim/sim_robot_state.hpp"
 #include "dseam/hal/slot_pool.hpp"
+#include "dseam/hal/standing_poses.hpp"
 
 namespace dseam::hal::sim {
 
@@ -66,7 +66,7 @@ class SimScanner final : public DepthCamera {
   std::vector<Bytes> frames_;
   std::vector<Bytes> buffers_;
   SlotPool slots_;
-  SimRobotState robot_;
+  StandingPoses robot_;
   CameraCounters counters_;
   std::atomic<bool> running_{false};
   std::uint64_t exposed_ = 0;

@@ -6,23 +6,25 @@
 
 #include "dseam/hal/interpolated_poses.hpp"
 
-namespace dseam::hal::sim {
+namespace dseam::hal {
 
-/// What the simulated robot reports: it stands still at each view and is nowhere in between.
+/// A robot that stands still at each view and is nowhere in between: the simulated one, and that
+/// of a scan set, which has one pose a frame.
 ///
-/// Context: stand() from the scanner's consumer thread, pose_at() from any.
-class SimRobotState final : public RobotState {
+/// Context: stand() from the camera's consumer thread, pose_at() from any.
+class StandingPoses final : public RobotState {
  public:
-  SimRobotState() noexcept : poses_(slots_) {}
+  StandingPoses() noexcept : poses_(slots_) {}
 
-  /// The robot stood at `pose` from its stamp on until `until_ns`.
+  /// The robot stood at `pose` for `half_dwell_ns` before and after its stamp.
   ///
   /// Errors:  kInvalidArgument: not after the stand before.
-  Result<> stand(StampedPose pose, std::int64_t until_ns) noexcept {
+  Result<> stand(StampedPose pose, std::int64_t half_dwell_ns) noexcept {
+    pose.stamp_ns -= half_dwell_ns;
     if (const Result<> from = poses_.push(pose); !from.ok()) {
       return from;
     }
-    pose.stamp_ns = until_ns;
+    pose.stamp_ns += 2 * half_dwell_ns;
     return poses_.push(pose);
   }
 
@@ -37,4 +39,4 @@ class SimRobotState final : public RobotState {
   InterpolatedPoses poses_;
 };
 
-}  // namespace dseam::hal::sim
+}  // namespace dseam::hal
