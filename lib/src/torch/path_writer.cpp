@@ -40,7 +40,12 @@ void PathWriter::move_to(const TorchPose& pose, double step_mm, const Stroke& st
 }
 
 void PathWriter::set_stroke(const Stroke& stroke) noexcept {
-  if (!empty()) {
+  if (empty()) {
+    return;
+  }
+  if (out_[out_.size() - 1].dwell_s > 0.0) {  // Its own stroke holds while it stands.
+    append(TorchPose(last()), stroke);
+  } else {
     apply(stroke, out_[out_.size() - 1]);
   }
 }
@@ -54,9 +59,6 @@ void PathWriter::stop() noexcept {
 void PathWriter::stand(double dwell_s, const Stroke& stroke) noexcept {
   if (empty() || !(dwell_s > 0.0)) {
     return;
-  }
-  if (out_[out_.size() - 1].dwell_s > 0.0) {
-    append(TorchPose(last()), stroke);
   }
   set_stroke(stroke);
   stop();
