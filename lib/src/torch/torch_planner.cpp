@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// The curve: arc length, stations, smoothing. torch_planner_pose.cpp puts the torch over it.
 #include "dseam/torch/torch_planner.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "hermite.hpp"
 #include "local_quadratic.hpp"
 
 namespace dseam::torch {
@@ -17,40 +19,6 @@ constexpr double kMinOpening =
     0.05;  // rad; flatter or sharper joints have no bisector to speak of.
 constexpr double kFewestInWindow = 2.6;  // Half width of the window in point distances, at least.
 
-/// Cubic Hermite segment of unit parameter: position and derivative.
-struct Hermite {
-  Vector3d p0, d0, p1, d1;
-
-  Vector3d at(double u) const noexcept {
-    const double v = 1.0 - u;
-    return v * v * (1.0 + 2.0 * u) * p0 + u * v * v * d0 + u * u * (1.0 + 2.0 * v) * p1 -
-           u * u * v * d1;
-  }
-  Vector3d slope(double u) const noexcept {
-    const double v = 1.0 - u;
-    return 6.0 * u * v * (p1 - p0) + v * (1.0 - 3.0 * u) * d0 + u * (3.0 * u - 2.0) * d1;
-  }
-  /// Arc length of [0, u] by four-point Gauss-Legendre quadrature.
-  double length(double u) const noexcept {
-    constexpr double kNode[] = {0.3399810435848563, 0.8611363115940526};
-    constexpr double kWeight[] = {0.6521451548625461, 0.3478548451374538};
-    double sum = 0.0;
-    for (int i = 0; i < 2; ++i) {
-      sum += kWeight[i] *
-             (slope(0.5 * u * (1.0 - kNode[i])).norm() + slope(0.5 * u * (1.0 + kNode[i])).norm());
-    }
-    return 0.5 * u * sum;
-  }
-  /// The parameter at which the length is `target_mm`.
-  double parameter_at(double target_mm, double total_mm) const noexcept {
-    double u = std::clamp(target_mm / total_mm, 0.0, 1.0);
-    for (int i = 0; i < 4; ++i) {
-      u = std::clamp(u - (length(u) - target_mm) / slope(u).norm(), 0.0, 1.0);
-    }
-    return u;
-  }
-};
-
 bool in(double v, double low, double high) noexcept { return v >= low && v <= high; }
 
 bool is_valid(const TorchPlanner::Config& c) noexcept {
@@ -63,27 +31,6 @@ bool is_valid(const TorchPlanner::Config& c) noexcept {
          in(c.max_gap_mm, 0.0, 1e3) && in(c.max_tilt_rad, 0.0, kPi) &&
          in(c.max_work_error_rad, 0.0, kPi) && in(c.max_turn_rad_per_mm, 1e-6, 1e3) &&
          in(c.up_base.norm(), 0.999, 1.001);
-}
-
-/// `v` turned towards `to` until it is within `limit_rad` of it.
-Vector3d within(const Vector3d& v, const Vector3d& to, double limit_rad) noexcept {
-  const Vector3d side = v - to * to.dot(v);
-  const double sine = side.norm();
-  if (std::atan2(sine, to.dot(v)) <= limit_rad || sine < 1e-9) {
-    return v;
-  }
-  return std::cos(limit_rad) * to + std::sin(limit_rad) / sine * side;
-}
-
-double angle_between(const Vector3d& a, const Vector3d& b) noexcept {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-/// Height of the contact tip's rim over a plane through the root.
-double clearance_over(const Vector3d& normal, const Vector3d& body, double stick_out_mm,
-                      double tip_radius_mm) noexcept {
-  const double sine = body.dot(normal);
-  return stick_out_mm * sine - tip_radius_mm * std::sqrt(std::max(0.0, 1.0 - sine * sine));
 }
 
 }  // namespace
@@ -260,93 +207,6 @@ TorchPoint TorchPlanner::point_at(const seam::SeamView& seam, std::size_t segmen
     point.weldable = judge(seam.points[(u < 0.5 ? a : b).source], point, work_error_rad);
   }
   return point;
-}
-
-/// Sets the orientation from the joint; false, and kDegenerate, where it does not span one.
-bool TorchPlanner::orient(Joint joint, TorchPoint& point, double& work_error_rad) const noexcept {
-  const double speed = joint.tangent.norm();
-  const Vector3d t = joint.tangent / speed;
-  Vector3d n1 = joint.n_shell - t * t.dot(joint.n_shell);
-  Vector3d n2 = joint.n_nozzle - t * t.dot(joint.n_nozzle);
-  if (!(speed > 0.0) || !(n1.norm() > kMinNormal) || !(n2.norm() > kMinNormal)) {
-    return false;
-  }
-  n1.normalize();
-  n2.normalize();
-  const double between = angle_between(n1, n2);
-  if (!in(between, kMinOpening, std::numbers::pi - kMinOpening)) {
-    return false;
-  }
-  const Vector3d along_shell = (n2 - n1 * n1.dot(n2)).normalized();  // Away from the root.
-  point.tangent = t;
-  point.dihedral_rad = std::numbers::pi - between;
-  point.out = (n1 + n2).normalized();
-  point.across = (n1 - n2).normalized();
-  const double work = config_.work_fraction * point.dihedral_rad + config_.work_offset_rad;
-  const Vector3d upright = std::cos(work) * along_shell + std::sin(work) * n1;
-  const Vector3d asked =
-      std::cos(config_.travel_angle_rad) * upright - std::sin(config_.travel_angle_rad) * t;
-  const Vector3d body = within(asked, config_.up_base, config_.max_tilt_rad);
-  work_error_rad = angle_between(asked, body);
-  const Vector3d ahead = t - body * body.dot(t);
-  if (!(ahead.norm() > kMinNormal)) {
-    return false;
-  }
-  Eigen::Matrix3d R_base_torch;
-  R_base_torch.col(0) = ahead.normalized();
-  R_base_torch.col(2) = -body;
-  R_base_torch.col(1) = R_base_torch.col(2).cross(R_base_torch.col(0));
-  point.pose.q_base_torch = Eigen::Quaterniond(R_base_torch).normalized();
-  point.clearance_mm =
-      std::min(clearance_over(n1, body, config_.stick_out_mm, config_.tip_radius_mm),
-               clearance_over(n2, body, config_.stick_out_mm, config_.tip_radius_mm));
-  return true;
-}
-
-Weldable TorchPlanner::judge(const seam::SeamPoint& nearest, const TorchPoint& point,
-                             double work_error_rad) const noexcept {
-  if (!in(point.dihedral_rad, config_.min_dihedral_rad, config_.max_dihedral_rad)) {
-    return Weldable::kDihedral;
-  }
-  if (nearest.source == seam::Source::kInterpolated && !config_.weld_interpolated) {
-    return Weldable::kInterpolated;
-  }
-  if (nearest.source == seam::Source::kMeasured && nearest.confidence < config_.min_confidence) {
-    return Weldable::kLowConfidence;
-  }
-  if (!(nearest.gap_mm <= config_.max_gap_mm)) {
-    return Weldable::kGap;
-  }
-  if (!(point.clearance_mm >= config_.min_clearance_mm)) {
-    return Weldable::kNoClearance;
-  }
-  return work_error_rad <= config_.max_work_error_rad ? Weldable::kYes : Weldable::kTilt;
-}
-
-/// Gives degenerate points the orientation before them, signs every quaternion like its
-/// predecessor, and marks where the torch would have to turn too fast.
-void TorchPlanner::limit_turns(std::span<TorchPoint> points, Report& report) const noexcept {
-  const auto usable = [](const TorchPoint& p) { return p.weldable != Weldable::kDegenerate; };
-  const auto first = std::find_if(points.begin(), points.end(), usable);
-  Eigen::Quaterniond before =
-      first == points.end() ? Eigen::Quaterniond::Identity() : first->pose.q_base_torch;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    TorchPoint& point = points[i];
-    Eigen::Quaterniond& q = point.pose.q_base_torch;
-    if (!usable(point)) {
-      q = before;
-    }
-    if (q.dot(before) < 0.0) {
-      q.coeffs() = -q.coeffs();
-    }
-    const double step_mm = i == 0 ? report.length_mm : point.s_mm - points[i - 1].s_mm;
-    const double rate = before.angularDistance(q) / step_mm;
-    report.max_turn_rad_per_mm = std::max(report.max_turn_rad_per_mm, rate);
-    if (rate > config_.max_turn_rad_per_mm && point.weldable == Weldable::kYes) {
-      point.weldable = Weldable::kTurnsTooFast;
-    }
-    before = q;
-  }
 }
 
 }  // namespace dseam::torch
