@@ -14,7 +14,7 @@ constexpr double kInsideMm = 1.0;  // Deeper than this in the nozzle is its bore
 constexpr double kBehindMm = 60.0;
 constexpr double kMarginMm = 0.1;
 constexpr double kMarginNoises = 4.0;
-constexpr double kGoesOnMm = 1.0;  // A surface's neighbouring pixels differ by less.
+constexpr double kShellShare = 0.6;  // Of the margin: between the two a pixel tells nothing.
 constexpr std::size_t kMaxApart = 6;
 constexpr std::uint32_t kStride = 2;
 
@@ -94,7 +94,10 @@ EdgeScanner::Pixel EdgeScanner::classify(const depth::DepthImage& frame, std::ui
   if (above > margin_mm_) {
     return {Kind::kOther, z_mm};
   }
-  return {above > -margin_mm_ ? Kind::kShell : Kind::kBehind, z_mm};
+  if (above > -kShellShare * margin_mm_) {
+    return {Kind::kShell, z_mm};
+  }
+  return {above < -margin_mm_ ? Kind::kBehind : Kind::kNothing, z_mm};
 }
 
 void EdgeScanner::scan_line(const depth::DepthImage& frame, const Step& start,
@@ -141,25 +144,33 @@ std::optional<Eigen::Vector3d> EdgeScanner::on_shell(const depth::DepthImage& fr
   return p;
 }
 
+// A flying pixel hangs between two depths; it does not lie on the line through the next two. Two in
+// a row are rare, so the pixel after a doubtful one is sure.
+std::optional<std::size_t> EdgeScanner::first_sure(std::size_t shell, std::size_t behind,
+                                                   std::size_t count) const noexcept {
+  const bool forward = behind > shell;
+  if (forward ? behind + 2 >= count : behind < 2) {
+    return std::nullopt;
+  }
+  const std::size_t next = forward ? behind + 1 : behind - 1;
+  const std::size_t after = forward ? behind + 2 : behind - 2;
+  if (line_[next].kind == Kind::kNothing || line_[after].kind == Kind::kNothing) {
+    return std::nullopt;
+  }
+  const float bend = line_[behind].z_mm - 2.0F * line_[next].z_mm + line_[after].z_mm;
+  if (std::abs(bend) < static_cast<float>(2.0 * margin_mm_)) {
+    return behind;
+  }
+  return line_[next].kind == Kind::kBehind ? std::optional(next) : std::nullopt;
+}
+
 void EdgeScanner::try_pair(const depth::DepthImage& frame, const Step& start, std::size_t shell,
                            std::size_t behind, std::size_t count) noexcept {
-  // A flying pixel hangs between two depths: the first behind whose neighbour goes on is sure.
-  const bool forward = behind > shell;
-  std::size_t sure = behind;
-  for (std::size_t tries = 0;; ++tries) {
-    const std::size_t next = forward ? sure + 1 : sure - 1;
-    if (tries == kMaxApart || next >= count || line_[next].kind == Kind::kNothing) {
-      return;
-    }
-    if (std::abs(line_[next].z_mm - line_[sure].z_mm) < static_cast<float>(kGoesOnMm)) {
-      break;
-    }
-    if (line_[next].kind != Kind::kBehind) {
-      return;
-    }
-    sure = next;
+  const std::optional<std::size_t> sure = first_sure(shell, behind, count);
+  if (!sure) {
+    return;
   }
-  const auto low = on_shell(frame, start, sure);
+  const auto low = on_shell(frame, start, *sure);
   const auto high = on_shell(frame, start, shell);
   if (!low || !high) {
     return;

@@ -61,6 +61,8 @@ class EdgeScanner {
   void scan_line(const depth::DepthImage& frame, const Step& start, std::size_t count) noexcept;
   void try_pair(const depth::DepthImage& frame, const Step& start, std::size_t shell,
                 std::size_t behind, std::size_t count) noexcept;
+  [[nodiscard]] std::optional<std::size_t> first_sure(std::size_t shell, std::size_t behind,
+                                                      std::size_t count) const noexcept;
   [[nodiscard]] std::optional<Eigen::Vector3d> on_shell(const depth::DepthImage& frame,
                                                         const Step& start,
                                                         std::size_t i) const noexcept;

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dseam/seam/closed_curve_fit.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "dseam/seam/dense_solver.hpp"
+#include "dseam/seam/ring_finder.hpp"
+#include "dseam/seam/surface_fit.hpp"
+
+namespace dseam::seam {
+namespace {
+
+constexpr double kTurnRad = 2.0 * std::numbers::pi;
+constexpr std::size_t kMinPoints = 30;
+constexpr int kRounds = 20;
+constexpr int kOutlierRounds = 3;
+constexpr double kOutlierSigmas = 8.0;
+constexpr double kMaxStepRad = 0.05;
+constexpr std::size_t kSteps = 1024;
+constexpr int kSurfaceSteps = 40;
+constexpr double kMaxHoleRad = std::numbers::pi / 2.0;
+
+std::array<double, ClosedCurveFit::kCoefficients> basis_at(double t) noexcept {
+  std::array<double, ClosedCurveFit::kCoefficients> b;
+  b[0] = 1.0;
+  for (std::size_t k = 1; k <= ClosedCurveFit::kHarmonics; ++k) {
+    b[2 * k - 1] = std::cos(static_cast<double>(k) * t);
+    b[2 * k] = std::sin(static_cast<double>(k) * t);
+  }
+  return b;
+}
+
+}  // namespace
+
+ClosedCurveFit::Report ClosedCurveFit::run(std::span<const Eigen::Vector3d> points,
+                                           double point_spacing_mm,
+                                           Buffer<SeamPoint>& out) noexcept {
+  Report report;
+  out.clear();
+  if (!lay_out(points, report)) {
+    return report;
+  }
+  for (int outlier_round = 0; outlier_round < kOutlierRounds; ++outlier_round) {
+    for (int round = 0; round < kRounds; ++round) {
+      if (!fit_series()) {
+        report.refusal = Refusal::kNoRing;
+        return report;
+      }
+      move_to_feet();
+    }
+    reject_outliers(report);
+  }
+  report.refusal = Refusal::kNoRing;
+  if (!fit_surfaces(report)) {
+    return report;
+  }
+  find_hole(report);
+  if (report.largest_hole_rad > kMaxHoleRad) {
+    report.refusal = Refusal::kLargeHole;
+    return report;
+  }
+  describe(report);
+  write_curve(point_spacing_mm, report, out);
+  return report;
+}
+
+// A first parameter: the angle in the plane of least squares.
+bool ClosedCurveFit::lay_out(std::span<const Eigen::Vector3d> points, Report& report) noexcept {
+  count_ = 0;
+  centre_.setZero();
+  for (const Eigen::Vector3d& p : points) {
+    if (p.allFinite() && p.cwiseAbs().maxCoeff() < 1e7 && count_ < stations_.size()) {
+      stations_[count_++] = {p, 0.0, 0.0, true};
+      centre_ += p;
+    }
+  }
+  report.num_points = static_cast<std::uint32_t>(count_);
+  if (count_ < kMinPoints) {
+    return false;
+  }
+  centre_ /= static_cast<double>(count_);
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Station& s : stations_.first(count_)) {
+    spread += (s.p - centre_) * (s.p - centre_).transpose();
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(spread / static_cast<double>(count_));
+  report.refusal = solver.eigenvalues()[2] < 1.0 ? Refusal::kNotMillimetres : Refusal::kNoRing;
+  if (!(solver.eigenvalues()[1] > 0.01 * solver.eigenvalues()[2]) ||
+      report.refusal == Refusal::kNotMillimetres) {
+    return false;  // A line, a point, or metres.
+  }
+  up_ = solver.eigenvectors().col(0);
+  const AcrossAxis frame = across(up_);
+  for (Station& s : stations_.first(count_)) {
+    s.t_rad = std::atan2((s.p - centre_).dot(frame.v), (s.p - centre_).dot(frame.u));
+  }
+  return true;
+}
+
+bool ClosedCurveFit::fit_series() noexcept {
+  Work& work = work_[0];
+  LentSymmetric normal(work.normal, kCoefficients);
+  work.normal = {};
+  work.series = {};
+  for (const Station& s : stations_.first(count_)) {
+    if (!s.used) {
+      continue;
+    }
+    const Basis b = basis_at(s.t_rad);
+    for (std::size_t i = 0; i < kCoefficients; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        work.series[static_cast<std::size_t>(axis)][i] += b[i] * (s.p - centre_)[axis];
+      }
+      for (std::size_t k = 0; k <= i; ++k) {
+        normal.at(i, k) += b[i] * b[k];
+      }
+    }
+  }
+  for (std::size_t i = 0; i < kCoefficients; ++i) {
+    normal.at(i, i) *= 1.0 + 1e-9;
+  }
+  if (!normal.factorise()) {
+    return false;
+  }
+  for (Basis& series : work.series) {
+    normal.solve(series);
+  }
+  return true;
+}
+
+ClosedCurveFit::Jet ClosedCurveFit::at(double t_rad) const noexcept {
+  const Basis b = basis_at(t_rad);
+  Jet jet{centre_, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Basis& c = work_[0].series[static_cast<std::size_t>(axis)];
+    jet.p[axis] += c[0];
+    for (std::size_t k = 1; k <= kHarmonics; ++k) {
+      const double f = static_cast<double>(k);
+      const double even = c[2 * k - 1] * b[2 * k - 1] + c[2 * k] * b[2 * k];
+      jet.p[axis] += even;
+      jet.d1[axis] += f * (c[2 * k] * b[2 * k - 1] - c[2 * k - 1] * b[2 * k]);
+      jet.d2[axis] -= f * f * even;
+    }
+  }
+  return jet;
+}
+
+void ClosedCurveFit::move_to_feet() noexcept {
+  for (Station& s : stations_.first(count_)) {
+    const Jet jet = at(s.t_rad);
+    const Eigen::Vector3d off = jet.p - s.p;
+    const double bend = jet.d1.squaredNorm() + off.dot(jet.d2);
+    const double slope = jet.d1.squaredNorm();
+    const double step = off.dot(jet.d1) / std::max(bend, 0.3 * slope + 1e-12);
+    s.t_rad -= std::clamp(step, -kMaxStepRad, kMaxStepRad);
+    s.off_mm = (at(s.t_rad).p - s.p).norm();
+  }
+}
+
+void ClosedCurveFit::reject_outliers(Report& report) noexcept {
+  for (std::size_t i = 0; i < count_; ++i) {
+    sorted_[i] = stations_[i].off_mm;
+  }
+  const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(count_ / 2);
+  std::nth_element(sorted_.begin(), middle, sorted_.begin() + static_cast<std::ptrdiff_t>(count_));
+  const double cut = kOutlierSigmas * 1.4826 * *middle + 1e-6;
+  report.num_outliers = 0;
+  for (Station& s : stations_.first(count_)) {
+    s.used = s.off_mm < cut;
+    report.num_outliers += s.used ? 0 : 1;
+  }
+}
+
+// Angles about the nozzle; the width in mm is along its surface, without the climb.
+void ClosedCurveFit::find_hole(Report& report) noexcept {
+  const NozzleFrame frame = frame_of(report.nozzle);
+  std::size_t n = 0;
+  for (const Station& s : stations_.first(count_)) {
+    if (s.used) {
+      sorted_[n++] = angle_about(report.nozzle, frame, s.p);
+    }
+  }
+  std::sort(sorted_.begin(), sorted_.begin() + static_cast<std::ptrdiff_t>(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    const double next = i + 1 < n ? sorted_[i + 1] : sorted_[0] + kTurnRad;
+    report.largest_hole_rad = std::max(report.largest_hole_rad, next - sorted_[i]);
+  }
+  report.largest_hole_mm = report.largest_hole_rad * report.nozzle.radius_mm;
+}
+
+// Root mean square distance after the fit; huge when it does not converge.
+double ClosedCurveFit::fit_surface(Surface& surface) const noexcept {
+  double rms = 1e300;
+  for (int step = 0; step < kSurfaceSteps; ++step) {
+    SurfaceEquations equations;
+    for (const Station& s : stations_.first(count_)) {
+      if (s.used) {
+        equations.add(surface, s.p);
+      }
+    }
+    const double now = std::sqrt(equations.weighted_squares() / std::max(1.0, equations.weight()));
+    const std::optional<Surface> next = equations.solve(surface);
+    if (!next) {
+      return 1e300;
+    }
+    if (std::abs(now - rms) < 1e-9) {
+      return now;
+    }
+    rms = now;
+    surface = *next;
+  }
+  return rms;
+}
+
+bool ClosedCurveFit::fit_surfaces(Report& report) noexcept {
+  double radius = 0.0;
+  for (const Station& s : stations_.first(count_)) {
+    const Eigen::Vector3d q = s.p - centre_;
+    radius += (q - q.dot(up_) * up_).norm() / static_cast<double>(count_);
+  }
+  report.nozzle = {SurfaceKind::kCylinder, centre_, up_, radius, 0.0};
+  report.nozzle_rms_mm = fit_surface(report.nozzle);
+  fit_shell(report);
+  if (!(report.nozzle_rms_mm < 0.2 * radius && report.shell_rms_mm < 0.2 * radius)) {
+    return false;
+  }
+  // Out of the shell: away from its axis or centre, up from a plane.
+  const bool plane = report.shell.kind == SurfaceKind::kPlane;
+  const Eigen::Vector3d outward = outward_normal(report.shell, centre_);
+  if (report.nozzle.axis.dot(outward) < 0.0) {
+    report.nozzle.axis = -report.nozzle.axis;
+  }
+  const double cosine = std::abs(report.nozzle.axis.dot(report.shell.axis));
+  const Eigen::Vector3d common = report.nozzle.axis.cross(report.shell.axis);
+  report.axes_angle_rad = std::acos(std::min(1.0, cosine));
+  report.axes_offset_mm =
+      plane || common.norm() < 1e-6
+          ? 0.0
+          : std::abs((report.shell.point - report.nozzle.point).dot(common.normalized()));
+  return true;
+}
+
+// The nozzle itself also goes through every point; the shell is what does so across it.
+void ClosedCurveFit::fit_shell(Report& report) const noexcept {
+  constexpr int kDirections = 6;
+  report.shell = {SurfaceKind::kPlane, centre_, up_, 0.0, 0.0};
+  report.shell_rms_mm = fit_surface(report.shell);
+  const AcrossAxis frame = across(up_);
+  for (int i = 0; i < 4 * kDirections; ++i) {
+    const double angle = std::numbers::pi * (i % kDirections) / kDirections;
+    const Eigen::Vector3d axis = std::cos(angle) * frame.u + std::sin(angle) * frame.v;
+    const double radius = report.nozzle.radius_mm * (i / (2 * kDirections) == 0 ? 1.5 : 4.0);
+    const Eigen::Vector3d below = (i / kDirections % 2 == 0 ? radius : -radius) * up_;
+    Surface trial{SurfaceKind::kCylinder, centre_ + below, axis, radius, 0.0};
+    const double rms = fit_surface(trial);
+    const bool across_nozzle = std::abs(trial.axis.dot(report.nozzle.axis)) < 0.8;
+    if (across_nozzle && rms < 0.7 * report.shell_rms_mm) {
+      report.shell = trial;
+      report.shell_rms_mm = rms;
+    }
+  }
+}
+
+ResidualStats ClosedCurveFit::stats_of(std::size_t count) noexcept {
+  ResidualStats stats;
+  stats.count = static_cast<std::uint32_t>(count);
+  const auto end = sorted_.begin() + static_cast<std::ptrdiff_t>(count);
+  for (auto it = sorted_.begin(); it != end; ++it) {
+    stats.rms_mm += *it * *it / static_cast<double>(count);
+    stats.max_mm = std::max(stats.max_mm, std::abs(*it));
+    *it = std::abs(*it);
+  }
+  stats.rms_mm = std::sqrt(stats.rms_mm);
+  const auto place = sorted_.begin() + static_cast<std::ptrdiff_t>(count * 95 / 100);
+  std::nth_element(sorted_.begin(), place, end);
+  stats.p95_mm = *place;
+  return stats;
+}
+
+// All points count here, outliers too.
+void ClosedCurveFit::describe(Report& report) noexcept {
+  const double n = static_cast<double>(count_);
+  Eigen::Vector3d spread = Eigen::Vector3d::Zero();
+  const auto fill = [&](auto&& value) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Jet jet = at(stations_[i].t_rad);
+      sorted_[i] = value(stations_[i], jet);
+    }
+    return stats_of(count_);
+  };
+  report.orthogonal = fill([](const Station& s, const Jet& jet) { return (jet.p - s.p).norm(); });
+  report.normal = fill([&](const Station& s, const Jet& jet) {
+    return (s.p - jet.p).dot(outward_normal(report.shell, jet.p));
+  });
+  report.lateral = fill([&](const Station& s, const Jet& jet) {
+    return (s.p - jet.p).dot(outward_normal(report.shell, jet.p).cross(jet.d1.normalized()));
+  });
+  for (const Station& s : stations_.first(count_)) {
+    const Eigen::Vector3d off = at(s.t_rad).p - s.p;
+    report.rms_mm += off.cwiseProduct(off) / n;
+    spread += (s.p - centre_).cwiseProduct(s.p - centre_) / n;
+  }
+  report.r_squared = Eigen::Vector3d::Ones() - report.rms_mm.cwiseQuotient(spread);
+  report.rms_mm = report.rms_mm.cwiseSqrt();
+}
+
+void ClosedCurveFit::write_curve(double spacing_mm, Report& report,
+                                 Buffer<SeamPoint>& out) noexcept {
+  auto& lengths = work_[0].lengths;
+  const auto t_of = [](double step) { return kTurnRad * step / double{kSteps}; };
+  lengths[0] = 0.0;
+  for (std::size_t i = 0; i < kSteps; ++i) {
+    const double middle = at(t_of(static_cast<double>(i) + 0.5)).d1.norm();
+    const double ends = at(t_of(static_cast<double>(i))).d1.norm() +
+                        at(t_of(static_cast<double>(i) + 1.0)).d1.norm();
+    lengths[i + 1] = lengths[i] + t_of(1.0) * (4.0 * middle + ends) / 6.0;  // Simpson.
+  }
+  report.length_mm = lengths[kSteps];
+  const double count = std::max(16.0, std::round(report.length_mm / spacing_mm));
+  report.refusal = count <= static_cast<double>(out.capacity()) ? Refusal::kNone : Refusal::kFull;
+  // Against the turn when the parameter runs clockwise about the nozzle.
+  const double sense = up_.dot(report.nozzle.axis) > 0.0 ? 1.0 : -1.0;
+  const double share = static_cast<double>(kCoefficients) / static_cast<double>(count_);
+  for (double i = 0.0; report.refusal == Refusal::kNone && i < count; i += 1.0) {
+    const double s = report.length_mm * i / count;
+    const double along = sense > 0.0 ? s : std::fmod(report.length_mm - s, report.length_mm);
+    const auto after = std::upper_bound(lengths.begin() + 1, lengths.end() - 1, along);
+    const auto k = static_cast<std::size_t>(after - lengths.begin()) - 1;
+    const double part = (along - lengths[k]) / (lengths[k + 1] - lengths[k]);
+    const Jet jet = at(t_of(static_cast<double>(k) + part));
+    SeamPoint point;
+    point.s_mm = s;
+    point.p_base = jet.p;
+    point.tangent = sense * jet.d1.normalized();
+    point.n_shell = outward_normal(report.shell, jet.p);
+    point.n_nozzle = outward_normal(report.nozzle, jet.p);
+    point.dihedral_rad =
+        std::numbers::pi - std::acos(std::clamp(point.n_shell.dot(point.n_nozzle), -1.0, 1.0));
+    point.sigma_lateral_mm = report.lateral.rms_mm * std::sqrt(share);
+    point.sigma_normal_mm = report.normal.rms_mm * std::sqrt(share);
+    point.source = Source::kMeasured;
+    point.confidence = point.sigma_lateral_mm < 0.1 ? Confidence::kHigh : Confidence::kMedium;
+    (void)out.append(point);
+  }
+}
+
+}  // namespace dseam::seam

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dseam/seam/closed_curve_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "support/allocation_counter.hpp"
+#include "support/arena_owner.hpp"
+#include "support/data_dir.hpp"
+
+namespace dseam::seam {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+class Fitter {
+ public:
+  Fitter()
+      : owner_(ClosedCurveFit::bytes(4096)),
+        fit_(4096, owner_.arena()),
+        storage_(4096),
+        out_(storage_) {}
+  ClosedCurveFit::Report fit(const std::vector<Eigen::Vector3d>& points) {
+    return fit_.run(points, 0.5, out_);
+  }
+  [[nodiscard]] std::span<const SeamPoint> curve() const { return out_.view(); }
+
+ private:
+  test::ArenaOwner owner_;
+  ClosedCurveFit fit_;
+  std::vector<SeamPoint> storage_;
+  Buffer<SeamPoint> out_;
+};
+
+/// The published weld points; empty where the data folder is absent, which CI does not accept.
+std::vector<Eigen::Vector3d> paper_points() {
+  std::ifstream file(test::data_dir() / "paper_weld_points.csv");
+  std::vector<Eigen::Vector3d> points;
+  for (std::string line; std::getline(file, line);) {
+    Eigen::Vector3d p;
+    if (std::sscanf(line.c_str(), "%lf,%lf,%lf", &p[0], &p[1], &p[2]) == 3) {
+      points.push_back(p);
+    }
+  }
+  return points;
+}
+
+/// A nozzle of radius 50 on a shell of radius 120, upright; in no order.
+std::vector<Eigen::Vector3d> saddle(std::size_t count) {
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double phi =
+        2.0 * std::numbers::pi * static_cast<double>(i * 37 % count) / static_cast<double>(count);
+    const double y = 50.0 * std::sin(phi);
+    points.push_back({50.0 * std::cos(phi), y, std::sqrt(120.0 * 120.0 - y * y)});
+  }
+  return points;
+}
+
+TEST(ClosedCurveFit, the_papers_points_give_the_papers_part) {
+  const std::vector<Eigen::Vector3d> points = paper_points();
+  ASSERT_EQ(points.size(), 546U) << "measured data are missing: set DSEAM_DATA_DIR";
+  Fitter fitter;
+
+  const ClosedCurveFit::Report report = fitter.fit(points);
+
+  EXPECT_EQ(report.refusal, Refusal::kNone);
+  EXPECT_NEAR(report.shell.radius_mm, 108.0, 0.5);
+  EXPECT_NEAR(report.nozzle.radius_mm, 59.2, 0.3);
+  EXPECT_NEAR(report.axes_angle_rad / kDegree, 62.9, 0.5);
+  EXPECT_NEAR(report.axes_offset_mm, 1.4, 0.5);
+  EXPECT_LT(report.largest_hole_rad / kDegree, 6.3);
+  EXPECT_NEAR(report.length_mm, 404.0, 2.0);
+}
+
+TEST(ClosedCurveFit, the_papers_points_lie_as_near_as_thirteen_coefficients_an_axis_allow) {
+  Fitter fitter;
+
+  const ClosedCurveFit::Report report = fitter.fit(paper_points());
+
+  EXPECT_LE(report.orthogonal.rms_mm, 0.43);
+  EXPECT_GE(report.r_squared.minCoeff(), 0.9997);
+  EXPECT_LE(report.normal.rms_mm, 0.14);
+  EXPECT_GT(report.lateral.rms_mm, 2.0 * report.normal.rms_mm) << "the error that R-squared hides";
+}
+
+TEST(ClosedCurveFit, exact_points_in_any_order_give_an_exact_ordered_curve) {
+  Fitter fitter;
+
+  const ClosedCurveFit::Report report = fitter.fit(saddle(400));
+
+  EXPECT_LT(report.orthogonal.max_mm, 1e-3);
+  EXPECT_NEAR(report.shell.radius_mm, 120.0, 1e-3);
+  EXPECT_NEAR(report.nozzle.radius_mm, 50.0, 1e-3);
+  const auto curve = fitter.curve();
+  ASSERT_GT(curve.size(), 100U);
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const SeamPoint& next = curve[(i + 1) % curve.size()];
+    EXPECT_NEAR((next.p_base - curve[i].p_base).norm(), 0.5, 0.01);
+    EXPECT_GT(curve[i].tangent.dot(next.p_base - curve[i].p_base), 0.49);
+    EXPECT_GT(curve[i].n_shell.cross(curve[i].n_nozzle).dot(curve[i].tangent), 0.0);
+  }
+}
+
+TEST(ClosedCurveFit, wild_points_are_counted_and_do_not_pull) {
+  std::vector<Eigen::Vector3d> points = saddle(400);
+  points.push_back({0.0, 0.0, 300.0});
+  points.push_back({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0});
+  for (std::size_t i = 0; i < 100; ++i) {
+    points[i] += Eigen::Vector3d(0.05 * std::sin(1.7 * static_cast<double>(i)), 0.0, 0.0);
+  }
+  Fitter fitter;
+
+  const ClosedCurveFit::Report report = fitter.fit(points);
+
+  EXPECT_EQ(report.num_points, 401U);
+  EXPECT_GE(report.num_outliers, 1U);
+  EXPECT_NEAR(report.nozzle.radius_mm, 50.0, 0.05);
+}
+
+TEST(ClosedCurveFit, a_line_a_heap_and_an_open_arc_are_refused_by_name) {
+  std::vector<Eigen::Vector3d> line;
+  for (int i = 0; i < 100; ++i) {
+    line.push_back({double(i), 2.0 * i, 0.0});
+  }
+  const std::vector<Eigen::Vector3d> heap(100, Eigen::Vector3d(1.0, 2.0, 3.0));
+  std::vector<Eigen::Vector3d> arc;
+  for (const Eigen::Vector3d& p : saddle(400)) {
+    if (p.x() > -10.0) {
+      arc.push_back(p);
+    }
+  }
+  Fitter fitter;
+
+  EXPECT_EQ(fitter.fit(line).refusal, Refusal::kNoRing);
+  EXPECT_EQ(fitter.fit(heap).refusal, Refusal::kNotMillimetres);
+  EXPECT_NE(fitter.fit(arc).refusal, Refusal::kNone);
+  EXPECT_EQ(fitter.fit({}).refusal, Refusal::kEmptyCloud);
+}
+
+TEST(ClosedCurveFit, run_does_not_allocate) {
+  const std::vector<Eigen::Vector3d> points = saddle(200);
+  Fitter fitter;
+  const test::AllocationCounter allocations;
+
+  (void)fitter.fit(points);
+
+  EXPECT_EQ(allocations.count(), 0U);
+}
+
+}  // namespace
+}  // namespace dseam::seam
