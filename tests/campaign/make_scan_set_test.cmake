@@ -1,0 +1,17 @@
+# Writes one small set and looks for the files that the design names.
+file(REMOVE_RECURSE ${OUT})
+execute_process(COMMAND ${PROGRAM} --out ${OUT} --row sphere --seed 7 --width 162 --height 120
+  RESULT_VARIABLE result)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "make_scan_set ended with ${result}")
+endif()
+foreach(file scene_camera.json depth/000005.png gray/000005.png)
+  if(NOT EXISTS ${OUT}/sphere_7/set/${file})
+    message(FATAL_ERROR "no set/${file}")
+  endif()
+endforeach()
+foreach(file truth_seam.csv truth_markers.csv truth_poses.json)
+  if(NOT EXISTS ${OUT}/sphere_7/truth/${file})
+    message(FATAL_ERROR "no truth/${file}")
+  endif()
+endforeach()
