@@ -2,7 +2,7 @@
 // One cycle: read the bus, watch, decide, write the bus.
 #include <chrono>
 
-#include "can_port.hpp"
+#include "dseam/hal/link_port.hpp"
 #include "dseam/rt/weld_session.hpp"
 
 namespace dseam::rt {
@@ -33,7 +33,9 @@ void WeldSession::receive() noexcept {
       return;
     }
     ++health_.frames_received;
-    link_.on_frame(from_can(frame.value()), now_ns_);
+    if (!frame.value().extended) {  // 29-bit identifiers are never ours.
+      link_.on_frame(hal::to_link(frame.value()), now_ns_);
+    }
   }
   ++health_.receive_full;
 }
@@ -142,7 +144,7 @@ void WeldSession::transmit() noexcept {
   bool blocked = false;
   for (const link::Frame& frame : out.view()) {
     // Once one found no room the rest stays behind as well: order matters, and the link repeats.
-    blocked = blocked || !push(to_can(frame));
+    blocked = blocked || !push(hal::to_can(frame));
     ++(blocked ? health_.frames_dropped : health_.frames_sent);
   }
   if (blocked && !blocked_) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "dseam/hal/link_port.hpp"
 #include "dseam/link/codec.hpp"
 #include "dseam/trajectory/sampler.hpp"
 
@@ -13,24 +14,6 @@ namespace {
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::uint16_t kRobotPoints = 512;
 constexpr std::int64_t kArcOffAfterTripNs = 25 * kMs;  // The robot's silence limit and the wire.
-
-link::Frame to_link(const hal::CanFrame& frame) {
-  link::Frame out;
-  out.id = frame.id;
-  out.fd = frame.fd;
-  out.size_bytes = frame.size_bytes;
-  out.data = frame.data;
-  return out;
-}
-
-hal::CanFrame to_can(const link::Frame& frame) {
-  hal::CanFrame out;
-  out.id = frame.id;
-  out.fd = frame.fd;
-  out.size_bytes = frame.size_bytes;
-  out.data = frame.data;
-  return out;
-}
 
 link::Receiver make_robot(Arena& arena) {
   return link::Receiver::make({}, kRobotPoints, arena).value();
@@ -101,7 +84,7 @@ void VirtualCell::robot_cycle() {
   bus.advance(now_ns());
   hal::CanFrame frame;
   while (bus.robot_receive(frame)) {
-    robot_.on_frame(to_link(frame), now_ns());
+    robot_.on_frame(hal::to_link(frame), now_ns());
   }
   std::array<link::Frame, 16> storage{};
   Buffer<link::Frame> out(storage);
@@ -150,12 +133,12 @@ void VirtualCell::speak(const Buffer<link::Frame>& frames) {
     Buffer<link::Frame> out(storage);
     robot_trouble.impostor->robot_time_us = static_cast<std::uint64_t>(now_ns() / 1000);
     (void)impostor_.send(link::MessageId::kStatus, link::encode(*robot_trouble.impostor), out);
-    bus.robot_send(to_can(out[0]));
+    bus.robot_send(hal::to_can(out[0]));
     return;
   }
   for (const link::Frame& frame : frames.view()) {
     if (!robot_trouble.silent) {
-      bus.robot_send(to_can(frame));
+      bus.robot_send(hal::to_can(frame));
     }
   }
 }
