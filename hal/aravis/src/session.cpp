@@ -215,6 +215,7 @@ void AravisCamera::Session::judge_silence(double silent_s) {
       std::max({kLeastS, config_.lost_periods * device_.period_s, 2.0 * patience_s});
   if (control_lost_ || silent_s > lost_s) {
     state_ = AravisState::kLost;
+    loss_unreported_ = true;
     disconnect();
   } else if (silent_s > config_.stalled_periods * device_.period_s + patience_s) {
     state_ = AravisState::kStalled;

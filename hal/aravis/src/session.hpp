@@ -87,6 +87,7 @@ class AravisCamera::Session {
   std::atomic<bool> control_lost_{false};
   std::atomic<bool> handing_over_{false};
   std::atomic<bool> reconnected_{false};
+  std::atomic<bool> loss_unreported_{false};  ///< The consumer hears of every loss, however short.
 
   mutable std::mutex stream_mutex_;
   ArvStream* stream_ = nullptr;

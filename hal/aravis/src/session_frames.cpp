@@ -46,6 +46,9 @@ Result<DepthFrame> AravisCamera::Session::next(std::chrono::nanoseconds timeout,
     if (!running_) {
       return Errc::kUnavailable;
     }
+    if (loss_unreported_.exchange(false)) {
+      return Errc::kDisconnected;
+    }
     ArvBuffer* buffer = pop(deadline);
     if (buffer == nullptr) {
       continue;

@@ -103,6 +103,7 @@ class V4l2Camera::Session {
   std::atomic<bool> running_{false};
   std::atomic<bool> claimed_{false};
   std::atomic<bool> failed_{false};
+  std::atomic<bool> loss_unreported_{false};  ///< The consumer hears of every loss, however short.
   std::atomic<std::uint32_t> returned_{0};
 
   std::mutex wake_mutex_;

@@ -53,6 +53,9 @@ Result<DepthFrame> V4l2Camera::Session::next(std::chrono::nanoseconds timeout,
       ++counters_.delivered;
       return taken->frame;
     }
+    if (loss_unreported_.exchange(false)) {
+      return Errc::kDisconnected;
+    }
   } while (Clock::now() < deadline);
   const bool lost = state_ == V4l2State::kLost;
   return !running_ ? Errc::kUnavailable : lost ? Errc::kDisconnected : Errc::kTimeout;
@@ -206,6 +209,7 @@ void V4l2Camera::Session::fail() noexcept {
   streaming_ = false;
   state_ = V4l2State::kLost;
   failed_ = true;
+  loss_unreported_ = true;
   wake_.notify_one();
 }
 

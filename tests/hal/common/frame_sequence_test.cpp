@@ -33,13 +33,25 @@ TEST(FrameSequence, a_v4l2_number_wraps_at_32_bits) {
   EXPECT_EQ(sequence.advance(1).gap, 2U);
 }
 
-TEST(FrameSequence, a_number_that_repeats_or_falls_back_is_no_progress) {
+TEST(FrameSequence, a_number_that_repeats_or_falls_back_is_a_frame_without_a_gap) {
   FrameSequence sequence(0, UINT32_MAX);
   const auto at = sequence.advance(100);
 
-  EXPECT_EQ(sequence.advance(100).sequence, at.sequence);
-  EXPECT_EQ(sequence.advance(90).sequence, at.sequence);
-  EXPECT_EQ(sequence.advance(101).sequence, at.sequence + 1);
+  EXPECT_EQ(sequence.advance(100).sequence, at.sequence + 1);
+  EXPECT_EQ(sequence.advance(90).sequence, at.sequence + 2);
+  EXPECT_EQ(sequence.advance(101).sequence, at.sequence + 3);
+  EXPECT_EQ(sequence.advance(103).gap, 1U);
+}
+
+TEST(FrameSequence, a_number_far_behind_is_a_device_that_counts_anew) {
+  FrameSequence sequence(0, UINT32_MAX);
+  const auto at = sequence.advance(100'000);
+
+  const auto anew = sequence.advance(0);
+
+  EXPECT_EQ(anew.sequence, at.sequence + 1);
+  EXPECT_EQ(anew.gap, 0U);
+  EXPECT_EQ(sequence.advance(2).gap, 1U);
 }
 
 TEST(FrameSequence, after_a_reconnect_it_goes_on_without_a_gap) {

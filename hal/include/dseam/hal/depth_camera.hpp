@@ -16,11 +16,11 @@ namespace dseam::hal {
 struct DepthFrame {
   std::span<const std::byte> depth;  ///< Laid out as `DepthModel::format` says.
   std::span<const std::byte> gray;   ///< One byte a pixel, or empty.
-  std::uint64_t sequence = 0;
-  std::uint32_t gap = 0;         ///< Frames lost between this one and the one before.
-  std::int64_t device_ns = 0;    ///< The camera's own clock at exposure.
-  std::int64_t captured_ns = 0;  ///< Monotonic host time of the exposure, as near as is known.
-  std::int64_t dequeued_ns = 0;  ///< Monotonic host time when the frame was taken.
+  std::uint64_t sequence = 0;        ///< Rises by 1 + gap.
+  std::uint32_t gap = 0;             ///< Frames lost between this one and the one before.
+  std::int64_t device_ns = 0;        ///< The camera's own clock at exposure.
+  std::int64_t captured_ns = 0;      ///< Monotonic host time of the exposure, as near as is known.
+  std::int64_t dequeued_ns = 0;      ///< Monotonic host time when the frame was taken.
 };
 
 /// kLatest drains to the newest frame and counts what it skipped; kEvery loses none while the

@@ -18,18 +18,21 @@ class FrameSequence {
     std::uint32_t gap = 0;  ///< Numbers left out since the frame before.
   };
 
-  /// Takes the next frame's number. One that is behind or repeats counts as no progress.
+  /// Takes the next frame's number. One that repeats, or is a few behind, is a frame like another
+  /// and no gap (some drivers number by the clock); one that is far behind means that the device
+  /// began to count anew.
   constexpr Step advance(std::uint64_t number) noexcept {
+    constexpr std::uint64_t kReordered = 16;
     const std::uint64_t place = (number - first_) % period_;
     const std::uint64_t ahead = any_ ? (place + period_ - place_) % period_ : 1;
-    const bool forward = ahead != 0 && ahead <= period_ / 2;
-    any_ = true;
-    if (!forward) {
-      return {sequence_, 0};
+    if (any_ && (ahead == 0 || period_ - ahead <= kReordered)) {
+      return {++sequence_, 0};
     }
+    const bool anew = ahead > period_ / 2;
+    any_ = true;
     place_ = place;
-    sequence_ += ahead;
-    return {sequence_, static_cast<std::uint32_t>(ahead - 1)};
+    sequence_ += anew ? 1 : ahead;
+    return {sequence_, anew ? 0 : static_cast<std::uint32_t>(ahead - 1)};
   }
 
   [[nodiscard]] constexpr std::uint64_t current() const noexcept { return sequence_; }
