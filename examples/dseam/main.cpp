@@ -39,6 +39,10 @@ ExitCode run(int argc, char** argv) {
   add_common_options(app, invocation);
   add_extract(app, invocation);
   add_calibrate(app, invocation);
+  add_record(app, invocation);
+  add_robot(app, invocation);
+  add_cameras(app, invocation);
+  add_rt_report(app, invocation);
   add_config(app, invocation);
   try {
     app.parse(argc, argv);

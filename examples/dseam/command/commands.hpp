@@ -9,7 +9,11 @@ namespace dseam::program {
 
 // Each adds its sub-command, which stores in `invocation.run` what it does.
 void add_calibrate(CLI::App& app, Invocation& invocation);
+void add_cameras(CLI::App& app, Invocation& invocation);
 void add_config(CLI::App& app, Invocation& invocation);
 void add_extract(CLI::App& app, Invocation& invocation);
+void add_record(CLI::App& app, Invocation& invocation);
+void add_robot(CLI::App& app, Invocation& invocation);
+void add_rt_report(CLI::App& app, Invocation& invocation);
 
 }  // namespace dseam::program

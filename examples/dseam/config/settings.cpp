@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "config/settings.hpp"
 
+#include "config/key_tables.hpp"
+
 namespace dseam::program {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
 std::vector<Key> job_keys(Settings& s) {
-  return {{"job", "method", choice(s.method, {"dseam", "paper"}),
-           "The chain of stages: this project's, or the paper's in the paper's order"},
-          {"job", "max_points", &s.max_points, "More points in the clouds of a command are refused",
-           "points", 1000, 16e6},
-          {"job", "max_seam_points", &s.max_seam_points, "Room for the points of seam.csv",
-           "points", 64, 1e6}};
+  return {
+      {"job", "method", choice(s.method, {"dseam", "paper"}),
+       "The chain of stages: this project's, or the paper's in the paper's order"},
+      {"job", "max_points", &s.max_points, "More points in the clouds of a command are refused",
+       "points", 1000, 16e6},
+      {"job", "max_seam_points", &s.max_seam_points, "Room for the points of seam.csv", "points",
+       64, 1e6},
+      {"job", "live_views", &s.live_views, "Frames that are taken of a real camera", "", 1, 16}};
 }
 
 std::vector<Key> seam_keys(pipeline::SeamChain::Config& c) {
@@ -57,12 +61,17 @@ std::vector<Key> hand_eye_keys(calibration::HandEyeConfig& c) {
 
 }  // namespace
 
+void append(std::vector<Key>& keys, const std::vector<Key>& more) {
+  keys.insert(keys.end(), more.begin(), more.end());
+}
+
 std::vector<Key> keys_of(Settings& settings) {
-  std::vector<Key> keys;
-  for (const std::vector<Key>& part :
-       {job_keys(settings), seam_keys(settings.seam), hand_eye_keys(settings.hand_eye)}) {
-    keys.insert(keys.end(), part.begin(), part.end());
-  }
+  std::vector<Key> keys = job_keys(settings);
+  append(keys, seam_keys(settings.seam));
+  append(keys, motion_keys(settings.motion));
+  append(keys, session_keys(settings.session));
+  append(keys, hand_eye_keys(settings.hand_eye));
+  append(keys, cell_keys(settings.cell));
   return keys;
 }
 

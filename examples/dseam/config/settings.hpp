@@ -5,7 +5,10 @@
 
 #include "config/key.hpp"
 #include "dseam/calibration/hand_eye.hpp"
+#include "dseam/hal/sim/cell_config.hpp"
+#include "dseam/pipeline/motion_chain.hpp"
 #include "dseam/pipeline/seam_chain.hpp"
+#include "robot/weld_run.hpp"
 
 namespace dseam::program {
 
@@ -16,8 +19,12 @@ struct Settings {
   Method method = Method::kDseam;
   std::uint32_t max_points = 4'000'000;
   std::uint32_t max_seam_points = 16384;
+  std::uint32_t live_views = 6;
   pipeline::SeamChain::Config seam;
   calibration::HandEyeConfig hand_eye;
+  pipeline::MotionChain::Config motion;
+  WeldRun::Config session;
+  hal::sim::CellConfig cell;
 };
 
 /// The table of all keys, bound to `settings`, which must outlive it.

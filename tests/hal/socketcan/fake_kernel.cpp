@@ -10,8 +10,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include "support/allocation_counter.hpp"
-
 namespace dseam::test {
 
 int FakeKernel::fails() {
@@ -69,7 +67,6 @@ bool FakeKernel::wants(const Socket& socket, const Message& message) {
 }
 
 void FakeKernel::deliver(const Message& message, int from) {
-  const AllocationCounter counter;
   for (auto& [fd, socket] : sockets_) {
     const bool own = fd == from;
     if (!wants(socket, message) || (own && !socket.own)) {
@@ -82,7 +79,6 @@ void FakeKernel::deliver(const Message& message, int from) {
     socket.inbox.push_back(message);
     socket.inbox.back().flags = own ? MSG_DONTROUTE | MSG_CONFIRM : MSG_DONTROUTE;
   }
-  allocations_ += counter.count();
 }
 
 int FakeKernel::open_socket(int, int, int) noexcept {

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <iostream>
+#include <memory>
+
+#include "command/commands.hpp"
+#include "dseam/hal/sim/sim_robot.hpp"
+#include "dseam/rt/linux/monotonic_clock.hpp"
+#include "robot/can_robot_side.hpp"
+#include "terminal/interrupt.hpp"
+
+namespace dseam::program {
+namespace {
+
+constexpr std::int64_t kPeriodNs = 1'000'000;
+
+ExitCode run(const std::string& interface, const Invocation& invocation) {
+  Settings settings;
+  invocation.configure(settings);
+  const auto& addressing = settings.session.link.addressing;
+  hal::sim::SimRobot::Config config;
+  config.receiver.addressing = addressing;
+  if (!hal::sim::SimRobot::check(config).ok()) {
+    throw Failure(ExitCode::kUsage, "the configured weld link: a limit is out of range");
+  }
+  const std::atomic<bool>& interrupted = watch_for_interrupt();
+  const auto bus = open_can(interface, addressing.classic);
+  rt::MonotonicClock clock;
+  hal::sim::SimRobot robot(config, *bus);
+  std::cout << "robot on " << interface << "; Ctrl-C ends it" << std::endl;
+  serve(robot, clock, kPeriodNs, interrupted);
+  std::cout << "executed " << robot.executed().size() + robot.not_recorded() << " set points\n";
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+void add_robot(CLI::App& app, Invocation& invocation) {
+  auto* command =
+      app.add_subcommand("robot", "the reference robot: the other end of the weld link");
+  auto interface = std::make_shared<std::string>();
+  command->add_option("--can", *interface, "CAN interface")->required();
+  command->callback([interface, &invocation] {
+    invocation.run = [interface](const Invocation& invoked) { return run(*interface, invoked); };
+  });
+}
+
+}  // namespace dseam::program

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+
+#include "dseam/rt/weld_session.hpp"
+#include "robot/robot_side.hpp"
+
+namespace dseam::program {
+
+/// What came of a weld.
+struct WeldOutcome {
+  bool finished = false;
+  bool interrupted = false;
+  rt::Fault fault = rt::Fault::kNone;
+  rt::Health health;
+  link::Sender::Report link;
+};
+
+/// Drives one weld session cycle by cycle: greets the robot, plans from where it stands, arms,
+/// loads, starts, and follows it to the end or to the fault that ends it. An interrupt turns the
+/// arc off with the first frame of the cycle that sees it.
+class WeldRun {
+ public:
+  struct Config {
+    rt::WeldSession::Config session;
+    link::Sender::Config link;
+  };
+  using Progress = std::function<void(std::size_t executed, std::size_t total)>;
+  /// Plans from where the torch stands; empty when there is no path from there.
+  using Planner = std::function<trajectory::SetPointView(const torch::TorchPose& now)>;
+
+  /// `bus` is that of `side`, or what records it.
+  ///
+  /// Errors:  throws Failure(kUsage) where the configuration contradicts itself.
+  WeldRun(const Config& config, RobotSide& side, hal::CanBus& bus,
+          const std::atomic<bool>& interrupted);
+
+  WeldRun(const WeldRun&) = delete;
+  WeldRun& operator=(const WeldRun&) = delete;
+
+  WeldOutcome run(const Planner& plan, const Progress& progress);
+
+ private:
+  /// Cycles until `done`, at most `limit_s`; false when a fault or an interrupt came first.
+  bool cycle_until(const std::function<bool()>& done, double limit_s);
+  bool start(trajectory::SetPointView points);
+  bool follow(std::size_t total, const Progress& progress);
+  void cycle();
+  void end_in_order();
+  [[nodiscard]] bool stopped() const;
+
+  RobotSide& side_;
+  const std::atomic<bool>& interrupted_;
+  link::Sender sender_;
+  rt::WeldSession session_;
+  rt::WeldSession::Inputs inputs_;
+};
+
+}  // namespace dseam::program
