@@ -39,6 +39,9 @@ class HeightMap {
   /// Bilinear on a surface; the nearest cell beside a hole or an edge, which must not be blurred.
   [[nodiscard]] double z_at(double column, double row) const noexcept {
     constexpr double kEdgeMm = 1.0;
+    if (std::isnan(column) || std::isnan(row)) {
+      return column + row;
+    }
     const double c = std::clamp(column, 0.0, width_ - 1.0);
     const double r = std::clamp(row, 0.0, height_ - 1.0);
     const auto c0 = static_cast<std::uint32_t>(c);

@@ -287,17 +287,19 @@ void FakeV4l2Sys::expose(Connection& connection) {
   const std::uint32_t index = connection.queue.front();
   connection.queue.erase(connection.queue.begin());
   connection.done.push_back(index);
-  fill(connection.buffers[index], turn.fault, connection.sequence);
+  fill(connection.buffers[index], turn.fault, connection.sequence,
+       setup_.period_ns == 0 ? now_ns() : connection.due_ns);
 }
 
-void FakeV4l2Sys::fill(Buffer& buffer, DeviceFault fault, std::uint32_t sequence) {
+void FakeV4l2Sys::fill(Buffer& buffer, DeviceFault fault, std::uint32_t sequence,
+                       std::int64_t exposed_ns) {
   const std::uint32_t size = line_bytes() * setup_.height;
   const auto address = buffer.report.m.userptr;
   auto* bytes = reinterpret_cast<std::byte*>(address);  // NOLINT: see map().
   if (mappings_.contains(bytes)) {
     std::fill_n(bytes, size, std::byte(sequence));
   }
-  std::int64_t stamp_us = now_ns() / 1000;
+  std::int64_t stamp_us = exposed_ns / 1000;
   stamp_us += fault == DeviceFault::kClockJump ? 3'600'000'000 : 0;
   stamp_us -= fault == DeviceFault::kDelayed ? 500'000 : 0;
   stamp_us = fault == DeviceFault::kStuck ? last_stamp_us_ : stamp_us;

@@ -78,7 +78,8 @@ class FakeV4l2Sys final : public hal::v4l2::V4l2Sys {
   void stream_off(Connection& connection);
   void produce(Connection& connection);
   void expose(Connection& connection);
-  void fill(Buffer& buffer, hal::fake::DeviceFault fault, std::uint32_t sequence);
+  void fill(Buffer& buffer, hal::fake::DeviceFault fault, std::uint32_t sequence,
+            std::int64_t exposed_ns);
   [[nodiscard]] std::uint32_t line_bytes() const { return 2 * setup_.width + setup_.padding_bytes; }
 
   Setup setup_;
