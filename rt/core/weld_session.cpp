@@ -120,8 +120,7 @@ void WeldSession::act(SessionAction action) noexcept {
       done = link_.arm(now_ns_);
       break;
     case SessionAction::kBeginLoading:
-      ++trajectory_;
-      trajectory_ = trajectory_ == 0 ? std::uint16_t{1} : trajectory_;
+      trajectory_ = static_cast<std::uint16_t>(trajectory_ % 65'535U + 1U);  // Never 0.
       done = link_.load(points_, trajectory_, now_ns_);
       break;
     case SessionAction::kBeginRunning:
@@ -131,7 +130,6 @@ void WeldSession::act(SessionAction action) noexcept {
     case SessionAction::kBeginHold:
       permit(false);
       arc_ready_ = false;
-      enable_edge_ = false;
       done = link_.hold(now_ns_);
       break;
     case SessionAction::kBeginStop:

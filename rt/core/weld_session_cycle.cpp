@@ -40,16 +40,13 @@ void WeldSession::receive() noexcept {
   ++health_.receive_full;
 }
 
-/// Arming, and an arc after a hold, take an edge of the operator's condition; losing it stops.
+/// Arming takes an edge of the operator's condition; losing it stops.
 void WeldSession::watch_operator(bool enable) noexcept {
   enable_edge_ = enable && (enable_edge_ || !enable_);
   const bool lost = enable_ && !enable;
   enable_ = enable;
   if (lost) {
     (void)apply(SessionEvent::kDisarm);
-  }
-  if (state_ == SessionState::kRunning && enable_edge_) {
-    arc_ready_ = true;
   }
 }
 
@@ -92,8 +89,6 @@ Fault WeldSession::link_fault() const noexcept {
       return Fault::kNone;
     case link::Fault::kPeerFault:
       return Fault::kPeerStopped;
-    case link::Fault::kBusLost:
-      return Fault::kBusOff;
     case link::Fault::kStatusSilent:
       return Fault::kDataStale;
     default:
@@ -115,10 +110,9 @@ void WeldSession::follow_link() noexcept {
 /// The robot says that it rests with the arc off, or has had the time that its own duty takes.
 bool WeldSession::at_rest() const noexcept {
   const link::Status& status = link_.status();
-  const bool says_so =
-      status_ns_ > tripped_ns_ && !status.arc_on &&
-      (status.state == link::RobotState::kSafe || status.state == link::RobotState::kIdle ||
-       status.state == link::RobotState::kFault);
+  const bool stands =
+      status.state == link::RobotState::kIdle || status.state >= link::RobotState::kSafe;
+  const bool says_so = status_ns_ > tripped_ns_ && !status.arc_on && stands;
   return says_so || now_ns_ - tripped_ns_ > config_.rest_limit_ns;
 }
 

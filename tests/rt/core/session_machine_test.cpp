@@ -107,6 +107,13 @@ TEST(SessionMachine, a_refused_event_changes_nothing) {
   });
 }
 
+TEST(SessionMachine, every_state_and_event_has_a_name) {
+  for_each_pair([](S state, E event) {
+    EXPECT_STRNE(name(state), "Unknown");
+    EXPECT_STRNE(name(event), "Unknown");
+  });
+}
+
 TEST(SessionMachine, values_outside_the_table_trip) {
   const dseam::rt::SessionStep tripped{S::kFault, A::kTrip};
 

@@ -25,6 +25,7 @@ void VirtualBus::advance(std::int64_t now_ns) {
   for (std::uint32_t i = 0; i < trouble.flood; ++i) {
     hal::CanFrame foreign;
     foreign.id = 0x10;
+    foreign.extended = i % 2 == 0;
     foreign.size_bytes = 8;
     at_host_.push_back(foreign);
   }
@@ -89,6 +90,9 @@ Result<hal::CanFrame> VirtualBus::do_receive(std::chrono::nanoseconds) noexcept 
 }
 
 Result<> VirtualBus::do_purge() noexcept {
+  if (trouble.purge_fails) {
+    return Errc::kIo;
+  }
   to_robot_.clear();
   return {};
 }

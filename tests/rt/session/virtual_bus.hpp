@@ -18,7 +18,8 @@ struct BusTrouble {
   double duplicate = 0.0;
   double reorder = 0.0;
   std::int64_t extra_delay_ns = 0;
-  bool blocked = false;     ///< The host's queue takes nothing.
+  bool blocked = false;  ///< The host's queue takes nothing.
+  bool purge_fails = false;
   bool cut = false;         ///< Nothing arrives on either side.
   std::uint32_t flood = 0;  ///< Foreign frames towards the host in each millisecond.
   hal::BusState state = hal::BusState::kErrorActive;

@@ -168,7 +168,7 @@ TEST(WeldSession, losing_the_operators_condition_stops_with_the_arc_off) {
   EXPECT_TRUE(cell.run_until([&] { return cell.session.state() == S::kIdle; }, 2000 * kMs));
 }
 
-TEST(WeldSession, a_hold_puts_the_arc_out_and_only_an_edge_brings_it_back) {
+TEST(WeldSession, after_a_hold_the_rest_of_the_path_is_driven_without_the_arc) {
   VirtualCell cell(9);
   ASSERT_TRUE(weld_half(cell));
 
@@ -252,6 +252,69 @@ TEST(WeldSession, a_robot_that_is_not_there_ends_in_a_name) {
 
   EXPECT_FALSE(cell.session.order(E::kArm).ok());
   EXPECT_EQ(cell.sender().fault(), dseam::link::Fault::kNoPeer);
+}
+
+TEST(WeldSession, holding_twice_is_no_fault_and_a_stop_while_it_holds_ends_it) {
+  VirtualCell cell(18);
+  ASSERT_TRUE(weld_half(cell));
+
+  EXPECT_TRUE(cell.session.order(E::kHold).ok());
+  EXPECT_TRUE(cell.session.order(E::kHold).ok());
+  EXPECT_EQ(cell.session.state(), S::kHold);
+  EXPECT_TRUE(cell.session.order(E::kStop).ok());
+  EXPECT_TRUE(cell.run_until([&] { return cell.session.state() == S::kIdle; }, 2000 * kMs));
+}
+
+TEST(WeldSession, a_stop_before_the_robot_has_armed_ends_safe) {
+  VirtualCell cell(19);
+  ASSERT_TRUE(cell.bring_to(S::kPlanned));
+  cell.inputs.operator_enable = true;
+  cell.cycle();
+  ASSERT_TRUE(cell.session.order(E::kArm).ok());
+
+  EXPECT_TRUE(cell.session.order(E::kStop).ok());
+  EXPECT_TRUE(cell.run_until([&] { return cell.session.state() == S::kSafe; }, 3000 * kMs));
+  EXPECT_FALSE(cell.arc_on());
+}
+
+TEST(WeldSession, a_trajectory_that_the_robot_cannot_take_ends_safe) {
+  VirtualCell cell(20);
+  (void)cell.session.order(E::kScan);
+  std::vector<dseam::trajectory::SetPoint> points(200, cell.points().front());
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    points[i].t_us = 100 * i;  // Faster than the robot reads them.
+  }
+  ASSERT_TRUE(cell.session.plan(points.front().pose, points).ok());
+  (void)cell.session.connect(cell.new_session(), cell.now_ns());
+  cell.run(300 * kMs);
+  ASSERT_TRUE(cell.bring_to(S::kArmed));
+
+  (void)cell.session.order(E::kLoad);
+
+  EXPECT_EQ(cell.session.fault(), Fault::kLinkLost);
+  EXPECT_TRUE(cell.run_until([&] { return cell.session.state() == S::kSafe; }, 3000 * kMs));
+}
+
+TEST(WeldSession, a_bus_that_cannot_be_purged_and_a_session_of_zero_are_refused) {
+  VirtualCell cell(21);
+  cell.bus.trouble.purge_fails = true;
+
+  EXPECT_FALSE(cell.session.connect(cell.new_session(), cell.now_ns()).ok());
+  cell.bus.trouble.purge_fails = false;
+  EXPECT_FALSE(cell.session.connect(0, cell.now_ns()).ok());
+  EXPECT_FALSE(cell.session.plan({}, {}).ok());
+}
+
+TEST(PathTracker, without_a_path_it_tells_only_of_the_torch) {
+  dseam::rt::PathTracker tracker{{}};
+  dseam::rt::ArcInputs in;
+  dseam::link::PoseReport pose;
+  pose.speed_mm_s = 3.0;
+
+  tracker.look(pose, 0, 1000, in);
+
+  EXPECT_EQ(in.speed_mm_s, 3.0);
+  EXPECT_EQ(in.corridor_mm, 0.0);
 }
 
 TEST(WeldSession, the_cycle_allocates_nothing) {

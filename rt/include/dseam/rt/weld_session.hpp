@@ -120,7 +120,7 @@ class WeldSession {
   bool session_used_ = true;  ///< The link's session was armed already, or there is none.
   bool enable_ = false;
   bool enable_edge_ = false;  ///< The operator's condition came anew.
-  bool arc_ready_ = false;    ///< After a hold the arc needs the operator's edge again.
+  bool arc_ready_ = false;    ///< Not after a hold: a broken bead is taken up by a new plan.
   bool permitted_ = false;
 };
 
