@@ -160,17 +160,14 @@ void AravisCamera::Session::end_acquisition() {
   state_ = AravisState::kIdle;
 }
 
+/// Takes no lock: what came back is ours alone, and a consumer that waits for frames holds the
+/// stream nearly all the time.
 void AravisCamera::Session::feed() {
   std::uint32_t slots = returned_.exchange(0, std::memory_order_acquire);
   while (slots != 0) {
     const auto slot = static_cast<std::uint32_t>(std::countr_zero(slots));
     slots &= slots - 1;
-    ArvBuffer* buffer = nullptr;
-    {
-      const std::lock_guard lock(stream_mutex_);
-      buffer = std::exchange(popped_[slot], nullptr);
-    }
-    arv_stream_push_buffer(device_.stream.get(), buffer);
+    arv_stream_push_buffer(device_.stream.get(), std::exchange(popped_[slot], nullptr));
   }
 }
 

@@ -78,7 +78,7 @@ class AravisCamera::Session {
   FrameSequence sequence_;
   std::uint32_t missing_ = 0;
   std::int64_t last_captured_ns_ = 0;
-  std::array<ArvBuffer*, SlotPool::kMaxSlots> popped_{};  ///< Under stream_mutex_.
+  std::array<ArvBuffer*, SlotPool::kMaxSlots> popped_{};  ///< The consumer's until returned.
 
   std::atomic<AravisState> state_{AravisState::kIdle};
   std::atomic<bool> running_{false};
