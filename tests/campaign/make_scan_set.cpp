@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -25,25 +26,48 @@ struct Arguments {
   std::uint32_t width = 1296;
   std::uint32_t height = 966;
   bool without_poses = false;
+  bool flange_poses = false;
 };
 
+/// Where the camera sits on the flange when flange poses are written.
+geometry::RigidTransform flange_camera() {
+  return {geometry::rotation_exp({0.05, -0.08, 1.2}), {62.0, -35.0, 118.0}};
+}
+
 hal::replay::ScanView view_of(const hal::sim::Cell& cell, std::uint32_t i,
-                              hal::sim::Rendering rendering, bool without_pose) {
+                              hal::sim::Rendering rendering, const Arguments& arguments) {
   hal::replay::ScanView view;
   view.camera.id = i;
   view.camera.intrinsics = intrinsics(cell.config().scanner);
   view.camera.mm_per_count = cell.config().scanner.mm_per_count;
   view.camera.stamp_ns = 1'000'000'000LL * i;
-  if (!without_pose) {
-    view.camera.T_base_camera = cell.views()[i].T_base_camera_reported;
+  const geometry::RigidTransform& reported = cell.views()[i].T_base_camera_reported;
+  if (arguments.flange_poses) {
+    view.camera.T_base_flange = reported * flange_camera().inverse();
+  } else if (!arguments.without_poses) {
+    view.camera.T_base_camera = reported;
   }
   view.depth = std::move(rendering.depth);
   view.gray = std::move(rendering.gray);
   return view;
 }
 
+bool write_hand_eye(const fs::path& file) {
+  std::ofstream out(file);
+  out.precision(17);
+  out << "{\"T_flange_camera\": [";
+  const char* comma = "";
+  for (const double value : geometry::to_row_major(flange_camera())) {
+    out << comma << value;
+    comma = ", ";
+  }
+  out << "]}\n";
+  out.close();
+  return !out.fail();
+}
+
 std::optional<std::string> write_set(const hal::sim::Cell& cell, const fs::path& dir,
-                                     bool without_poses) {
+                                     const Arguments& arguments) {
   auto writer = hal::replay::ScanSetWriter::create(dir / "set");
   if (!writer.ok()) {
     return writer.fault();
@@ -51,7 +75,7 @@ std::optional<std::string> write_set(const hal::sim::Cell& cell, const fs::path&
   for (std::uint32_t i = 0; i < cell.views().size(); ++i) {
     hal::sim::Rendering rendering;
     cell.scan(i, rendering);
-    const auto view = view_of(cell, i, std::move(rendering), without_poses);
+    const auto view = view_of(cell, i, std::move(rendering), arguments);
     if (const auto fault = writer.value().add(view)) {
       return fault->text;
     }
@@ -60,9 +84,9 @@ std::optional<std::string> write_set(const hal::sim::Cell& cell, const fs::path&
     return fault->text;
   }
   fs::create_directories(dir / "truth");
-  return write_truth(cell, dir / "truth").ok()
-             ? std::nullopt
-             : std::optional(dir.string() + "/truth: cannot be written");
+  const bool written = write_truth(cell, dir / "truth").ok() &&
+                       (!arguments.flange_poses || write_hand_eye(dir / "truth/hand_eye.json"));
+  return written ? std::nullopt : std::optional(dir.string() + "/truth: cannot be written");
 }
 
 std::optional<std::string> write_one(const Arguments& arguments, const std::string& row,
@@ -75,7 +99,7 @@ std::optional<std::string> write_one(const Arguments& arguments, const std::stri
   config->scanner.height = arguments.height;
   const auto cell = hal::sim::Cell::make(*config);
   const fs::path dir = arguments.out / (row + "_" + std::to_string(seed));
-  return cell.ok() ? write_set(cell.value(), dir, arguments.without_poses)
+  return cell.ok() ? write_set(cell.value(), dir, arguments)
                    : std::optional(row + ": " + fault_in(*config));
 }
 
@@ -91,6 +115,8 @@ int main(int argc, char** argv) {
   app.add_option("--width", arguments.width, "pixels");
   app.add_option("--height", arguments.height, "pixels");
   app.add_flag("--without-poses", arguments.without_poses, "leave the robot's poses out");
+  app.add_flag("--flange-poses", arguments.flange_poses,
+               "write T_base_flange instead of camera poses, and truth/hand_eye.json");
   CLI11_PARSE(app, argc, argv);
 
   if (arguments.rows == std::vector<std::string>{"all"}) {

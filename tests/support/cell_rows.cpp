@@ -60,12 +60,39 @@ void open_joint(CellConfig& config, JointKind kind, Pcg32& random) {
   config.views.azimuth_span_rad = 90.0 * kDegree;
 }
 
+/// The joint of the paper's published points.
+hal::sim::JointConfig papers_joint() {
+  hal::sim::JointConfig joint;
+  joint.shell_radius_mm = 108.0;
+  joint.nozzle_radius_mm = 59.2;
+  joint.axis_angle_rad = 62.9 * kDegree;
+  joint.eccentricity_mm = 1.4;
+  joint.gap_mm = 0.0;
+  return joint;
+}
+
+/// Two upright nozzles of one size side by side, both in view: nothing says which is meant.
+void two_equal(CellConfig& config) {
+  constexpr double kApartMm = 130.0;
+  config.joint.axis_angle_rad = 90.0 * kDegree;
+  config.joint.eccentricity_mm = 0.0;
+  config.joint.gap_mm = 0.0;
+  config.joint.nozzle_radius_mm = 40.0;
+  config.joint.nozzle_height_mm = 60.0;
+  config.joint.shell_length_mm = 520.0;
+  config.clutter.second_nozzle_radius_mm = 40.0;
+  config.clutter.second_nozzle_height_mm = 60.0;
+  config.clutter.second_nozzle_x_mm = -kApartMm;
+  config.views.aim_x_mm = -0.5 * kApartMm;
+  config.views.working_distance_mm = 720.0;
+}
+
 struct Row {
   std::string_view name;
   void (*apply)(CellConfig&, Pcg32&);
 };
 
-constexpr std::array<Row, 21> kRows{{
+constexpr std::array<Row, 23> kRows{{
     {"round", [](CellConfig&, Pcg32&) {}},
     {"touching", [](CellConfig& c, Pcg32&) { c.joint.gap_mm = 0.0; }},
     {"gap3", [](CellConfig& c, Pcg32&) { c.joint.gap_mm = 3.0; }},
@@ -90,6 +117,8 @@ constexpr std::array<Row, 21> kRows{{
        c.scanner.unseen_start = r.uniform();
      }},
     {"clutter", [](CellConfig& c, Pcg32&) { cluttered(c); }},
+    {"paper", [](CellConfig& c, Pcg32&) { c.joint = papers_joint(); }},
+    {"two_equal", [](CellConfig& c, Pcg32&) { two_equal(c); }},
     {"half_seen", [](CellConfig& c, Pcg32&) { c.scanner.unseen_share = 0.5; }},
     {"shell_only", [](CellConfig& c, Pcg32&) { c.joint.kind = JointKind::kShellOnly; }},
     {"no_markers", [](CellConfig& c, Pcg32&) { c.markers.count = 0; }},

@@ -6,29 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "dseam/hal/sim/cell.hpp"
+#include "clean_cell.hpp"
 
 namespace dseam::hal::sim {
 namespace {
-
-/// Without any error but those that a test turns on.
-CellConfig clean_cell() {
-  CellConfig config;
-  config.scanner.noise_mm = 0.0;
-  config.scanner.bowl_mm = 0.0;
-  config.scanner.dropout_share = 0.0;
-  config.scanner.flying_share = 0.0;
-  config.scanner.gray_noise = 0.0;
-  config.scanner.width = 648;
-  config.scanner.height = 483;
-  return config;
-}
-
-Rendering scan(const CellConfig& config, std::size_t view = 0) {
-  Rendering out;
-  Cell::make(config).value().scan(view, out);
-  return out;
-}
 
 double depth_mm(const Rendering& r, std::size_t i) { return r.depth[i] / 64.0; }
 
@@ -167,57 +148,6 @@ TEST(Scanner, nothing_is_measured_under_the_grazing_angle_or_out_of_range) {
       ASSERT_LE(hit.t, 700.0 + 0.01);
     }
   }
-}
-
-double distance_to(const TruthCurve& curve, const Eigen::Vector3d& p) {
-  double nearest = 1e9;
-  for (const TruthPoint& point : curve.points) {
-    nearest = std::min(nearest, (point.p - p).norm());
-  }
-  return nearest;
-}
-
-struct NearSeam {
-  std::size_t inside = 0;  ///< Measured pixels within 2 mm of the seam...
-  std::size_t around = 0;  ///< ...and from there to 4 mm.
-};
-
-NearSeam measured_near_seam(const CellConfig& config) {
-  const Cell cell = Cell::make(config).value();
-  const TruthCurve truth = *cell.seam();
-  const depth::Intrinsics k = intrinsics(config.scanner);
-  Rendering r;
-  NearSeam near;
-  for (std::size_t view = 0; view < 6; ++view) {
-    cell.scan(view, r);
-    for (std::size_t i = 0; i < r.depth.size(); i += 7) {
-      const double z = static_cast<double>(r.true_z_mm[i]);
-      const double x = (static_cast<double>(i % k.width) - k.cx) * z / k.fx;
-      const double y = (static_cast<double>(i / k.width) - k.cy) * z / k.fy;
-      if (r.depth[i] == 0) {
-        continue;
-      }
-      const double d =
-          distance_to(truth, cell.views()[view].T_base_camera * Eigen::Vector3d(x, y, z));
-      near.inside += d < 1.95;
-      near.around += d > 2.05 && d < 4.0;
-    }
-  }
-  return near;
-}
-
-TEST(Scanner, a_dead_band_takes_away_what_is_within_half_its_width_of_the_joint) {
-  CellConfig config = clean_cell();
-  config.scanner.width = 324;
-  config.scanner.height = 242;
-  const NearSeam before = measured_near_seam(config);
-  config.scanner.dead_band_mm = 4.0;
-
-  const NearSeam after = measured_near_seam(config);
-
-  EXPECT_GT(before.inside, 100U);
-  EXPECT_EQ(after.inside, 0U);
-  EXPECT_EQ(after.around, before.around);
 }
 
 TEST(Scanner, flush_markers_are_bright_discs_of_their_size) {

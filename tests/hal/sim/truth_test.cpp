@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -116,6 +118,68 @@ TEST(TruthCurve, the_dihedral_runs_from_acute_to_obtuse_round_an_oblique_nozzle)
   }
   EXPECT_NEAR(least, 60.0 * kPi / 180.0, 1e-4);
   EXPECT_NEAR(most, 120.0 * kPi / 180.0, 1e-4);
+}
+
+bool inside_any(const Scene& scene, const Vector3d& p) {
+  return std::ranges::any_of(scene.bodies,
+                             [&p](const Body& body) { return body.solid.contains(p); });
+}
+
+/// Steps across the seam just below and just above the shell's surface, along the shell and away
+/// from the nozzle.
+struct Around {
+  bool below_inwards = false;
+  bool below_outwards = false;
+  bool above_inwards = false;
+  bool above_outwards = false;
+};
+
+Around solid_around(const Scene& scene, const TruthPoint& at) {
+  constexpr double kStep = 0.01;
+  Vector3d outwards = at.tangent.cross(at.n_shell).normalized();
+  outwards = outwards.dot(at.n_nozzle) < 0.0 ? Vector3d(-outwards) : outwards;
+  const Vector3d out = kStep * outwards;
+  const Vector3d up = 0.1 * kStep * at.n_shell;
+  return {inside_any(scene, at.p - out - up), inside_any(scene, at.p + out - up),
+          inside_any(scene, at.p - out + up), inside_any(scene, at.p + out + up)};
+}
+
+/// The truth and the solids that are scanned come from different formulas: the one must lie on the
+/// edge of the other to a hundredth of a millimetre, all round.
+void expect_on_the_edge(const JointConfig& joint, bool gap) {
+  CellConfig config;
+  config.joint = joint;
+  const Scene scene = make_scene(config);
+  const auto curve = truth_curve(joint, ReferenceCurve::kShellEdge);
+  ASSERT_TRUE(curve);
+  for (const TruthPoint& point : curve->points) {
+    const Around solid = solid_around(scene, point);
+
+    ASSERT_TRUE(solid.below_outwards) << "the shell is outside";
+    ASSERT_FALSE(solid.above_outwards) << "air is above it";
+    ASSERT_EQ(solid.below_inwards, !gap) << "then the gap, or the nozzle";
+    ASSERT_EQ(solid.above_inwards, !gap);
+  }
+}
+
+TEST(TruthCurve, lies_on_the_edge_of_the_solids_that_are_scanned) {
+  JointConfig joint;
+  joint.axis_angle_rad = 68.0 * kPi / 180.0;
+  joint.eccentricity_mm = 12.0;
+  for (const double gap_mm : {0.0, 2.0}) {
+    for (const double taper_rad : {0.0, 0.15}) {
+      for (const ShellKind shell : {ShellKind::kCylinder, ShellKind::kPlane, ShellKind::kSphere}) {
+        joint.gap_mm = gap_mm;
+        joint.nozzle_taper_rad = taper_rad;
+        joint.shell = shell;
+        joint.shell_radius_mm = shell == ShellKind::kSphere ? 150.0 : 108.0;
+        joint.nozzle_ovality_mm = 0.3;
+        joint.hole_shift_x_mm = 0.3 * gap_mm;
+
+        expect_on_the_edge(joint, gap_mm > 0.0);
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ Vector3d centre_of(const std::optional<TruthCurve>& seam) {
 
 std::vector<CellView> plan_views(const CellConfig& config, const Vector3d& seam_centre) {
   const ViewConfig& plan = config.views;
-  const Vector3d aim = seam_centre + plan.aim_above_mm * Vector3d::UnitZ();
+  const Vector3d aim = seam_centre + Vector3d(plan.aim_x_mm, 0.0, plan.aim_above_mm);
   const bool full_turn = plan.azimuth_span_rad > 2.0 * std::numbers::pi - 1e-6;
   const double steps = full_turn ? plan.count : std::max(1.0, plan.count - 1.0);
   Pcg32 poses = stream(config.seed, Stream::kPoses);

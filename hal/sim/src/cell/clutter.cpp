@@ -73,7 +73,7 @@ void add_second_nozzle(const CellConfig& config, Scene& scene) {
   outer.centre = {config.clutter.second_nozzle_x_mm, 0.0, *top};
   outer.half = {radius, radius, 1.0};
   outer.low = -radius;
-  outer.high = 0.5 * config.joint.nozzle_height_mm;
+  outer.high = config.clutter.second_nozzle_height_mm;
   Convex bore = outer;
   bore.half = {0.85 * radius, 0.85 * radius, 1.0};
   bore.low = -1e6;

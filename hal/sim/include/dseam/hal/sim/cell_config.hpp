@@ -50,6 +50,7 @@ struct ClutterConfig {
   double table_below_mm = 5.0;
   std::uint32_t num_clamps = 0;          ///< A jaw (box) with a screw (cylinder) on the shell.
   double second_nozzle_radius_mm = 0.0;  ///< 0: none. Upright on the shell, without a gap.
+  double second_nozzle_height_mm = 40.0;
   double second_nozzle_x_mm = -115.0;
   std::uint32_t num_bolt_holes = 0;
   double bolt_hole_radius_mm = 5.0;
@@ -103,7 +104,8 @@ struct ViewConfig {
   double azimuth_span_rad = 2.0 * std::numbers::pi;  ///< A full turn is divided evenly.
   double tilt_rad = 45.0 * std::numbers::pi / 180.0;
   double working_distance_mm = 640.0;
-  double aim_above_mm = 10.0;  ///< The point looked at, above the seam's centre.
+  double aim_x_mm = 0.0;       ///< The point looked at, beside the seam's centre...
+  double aim_above_mm = 10.0;  ///< ...and above it.
   double jitter_mm = 5.0;      ///< True poses differ from the planned ones by this much...
   double jitter_rad = 0.01;    ///< ...which the robot knows.
   double pose_error_mm = 1.0;  ///< Standard deviation of each axis of the report.
