@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // From a seam to the reference robot: planned, timed and streamed with every gate at its defaults.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
 
 #include "dseam/hal/fake/manual_clock.hpp"
 #include "dseam/hal/sim/sim_bus.hpp"
@@ -9,6 +12,7 @@
 #include "dseam/torch/path_planner.hpp"
 #include "dseam/torch/torch_planner.hpp"
 #include "dseam/trajectory/sampler.hpp"
+#include "support/allocation_counter.hpp"
 #include "support/analytic_saddle.hpp"
 #include "support/arena_owner.hpp"
 
@@ -50,11 +54,12 @@ std::vector<SetPoint> set_points(const Saddle& saddle, const PathPlanner::Config
 /// Host, bus and robot under virtual time, one millisecond a cycle.
 class Cell {
  public:
-  explicit Cell(const dseam::torch::TorchPose& home)
+  explicit Cell(const dseam::torch::TorchPose& home, const WeldSession::Config& config = {},
+                std::size_t record_points = 100'000)
       : host_end_(bus_.connect()),
-        robot_(robot_config(home), bus_.connect()),
+        robot_(robot_config(home, record_points), bus_.connect()),
         sender_(dseam::link::Sender::make({}).value()),
-        session(WeldSession::make({}, sender_, host_end_).value()) {
+        session(WeldSession::make(config, sender_, host_end_).value()) {
     inputs.real_time = true;
   }
 
@@ -70,7 +75,7 @@ class Cell {
     }
     return sender_.state() == state;
   }
-  bool weld(const std::vector<SetPoint>& points, std::uint32_t id, int most) {
+  bool start(const std::vector<SetPoint>& points, std::uint32_t id) {
     using H = dseam::link::HostState;
     inputs.operator_enable = false;
     (void)session.connect(id, clock_.now_ns());
@@ -80,9 +85,12 @@ class Cell {
     }
     inputs.operator_enable = true;
     cycle();
-    if (!session.order(SessionEvent::kArm).ok() || !until(H::kArmed, 500) ||
-        !session.order(SessionEvent::kLoad).ok() || !until(H::kReady, 2000) ||
-        !session.order(SessionEvent::kStart).ok()) {
+    return session.order(SessionEvent::kArm).ok() && until(H::kArmed, 500) &&
+           session.order(SessionEvent::kLoad).ok() && until(H::kReady, 2000) &&
+           session.order(SessionEvent::kStart).ok();
+  }
+  bool weld(const std::vector<SetPoint>& points, std::uint32_t id, int most) {
+    if (!start(points, id)) {
       return false;
     }
     while (session.state() != SessionState::kIdle && session.fault() == dseam::rt::Fault::kNone &&
@@ -94,9 +102,11 @@ class Cell {
   [[nodiscard]] const dseam::hal::sim::SimRobot& robot() const { return robot_; }
 
  private:
-  static dseam::hal::sim::SimRobot::Config robot_config(const dseam::torch::TorchPose& home) {
+  static dseam::hal::sim::SimRobot::Config robot_config(const dseam::torch::TorchPose& home,
+                                                        std::size_t record_points) {
     dseam::hal::sim::SimRobot::Config config;
     config.home = home;
+    config.record_points = record_points;
     return config;
   }
 
@@ -143,6 +153,44 @@ TEST(WholeWeld, every_kind_of_path_is_welded_to_its_end_without_a_gate_in_its_wa
       EXPECT_EQ(burnt, asked);
     }
   }
+}
+
+rusage usage_of_this_thread() {
+  rusage usage{};
+  (void)getrusage(RUSAGE_THREAD, &usage);
+  return usage;
+}
+
+TEST(WholeWeld, a_million_cycles_allocate_nothing_fault_in_no_page_and_wait_for_nobody) {
+  PathPlanner::Config slow;
+  slow.num_passes = 3;
+  for (dseam::torch::Pass& pass : slow.passes) {
+    pass.speed_mm_s = 0.6;
+  }
+  slow.max_wrist_turn_rad = 20.0;
+  dseam::torch::TorchPose home;
+  home.p_base = {150.0, -80.0, 300.0};
+  const auto points = set_points({100.0, 30.0, 90 * kDegree, 0.0}, slow, home, 20'000);
+  WeldSession::Config config;
+  config.arc.max_standing_ns = 10'000'000'000;
+  Cell cell(home, config, 0);  // A record would grow into pages of its own.
+  ASSERT_TRUE(cell.start(points, 1));
+  for (int i = 0; i < 10'000; ++i) {
+    cell.cycle();
+  }
+  const dseam::test::AllocationCounter counter;
+  const rusage before = usage_of_this_thread();
+
+  for (int i = 0; i < 1'000'000; ++i) {
+    cell.cycle();
+  }
+
+  const rusage after = usage_of_this_thread();
+  EXPECT_EQ(cell.session.state(), SessionState::kRunning) << name(cell.session.fault());
+  EXPECT_EQ(counter.count(), 0U);
+  EXPECT_EQ(after.ru_majflt - before.ru_majflt, 0);
+  EXPECT_EQ(after.ru_minflt - before.ru_minflt, 0);
+  EXPECT_EQ(after.ru_nvcsw - before.ru_nvcsw, 0);
 }
 
 }  // namespace
