@@ -305,6 +305,37 @@ TEST(WeldSession, a_bus_that_cannot_be_purged_and_a_session_of_zero_are_refused)
   EXPECT_FALSE(cell.session.plan({}, {}).ok());
 }
 
+TEST(WeldSession, a_blocked_bus_is_named_when_it_is_the_first_to_show) {
+  WeldSession::Config config;
+  config.silence_ns = 8 * kMs;
+  VirtualCell cell(22, config);
+  ASSERT_TRUE(weld_half(cell));
+  cell.bus.trouble.blocked = true;
+
+  cell.run(16 * kMs);
+
+  EXPECT_EQ(cell.session.fault(), Fault::kTxBlocked);
+}
+
+TEST(WeldSession, a_robot_that_falls_silent_while_armed_leaves_stale_data) {
+  VirtualCell cell(23);
+  ASSERT_TRUE(cell.bring_to(S::kArmed));
+  cell.robot_trouble.silent = true;
+
+  cell.run(100 * kMs);
+
+  EXPECT_EQ(cell.session.fault(), Fault::kDataStale);
+}
+
+TEST(WeldSession, a_second_greeting_replaces_the_first) {
+  VirtualCell cell(24);
+
+  EXPECT_TRUE(cell.session.connect(cell.new_session(), cell.now_ns()).ok());
+  EXPECT_TRUE(cell.session.connect(cell.new_session(), cell.now_ns()).ok());
+  cell.run(300 * kMs);
+  EXPECT_EQ(cell.sender().state(), dseam::link::HostState::kIdle);
+}
+
 TEST(PathTracker, without_a_path_it_tells_only_of_the_torch) {
   dseam::rt::PathTracker tracker{{}};
   dseam::rt::ArcInputs in;
