@@ -179,7 +179,7 @@ TEST(TimeScaling, limits_of_zero_less_or_nothing_are_refused) {
   EXPECT_TRUE(refused({.speed_mm_s = 0.0}));
   EXPECT_TRUE(refused({.acceleration_mm_s2 = -1.0}));
   EXPECT_TRUE(refused({.jerk_mm_s3 = kNan}));
-  EXPECT_TRUE(refused({.angular_speed_rad_s = INFINITY}));
+  EXPECT_TRUE(refused({.angular_speed_rad_s = std::numeric_limits<double>::infinity()}));
   EXPECT_TRUE(refused({.angular_acceleration_rad_s2 = 0.0}));
 }
 

@@ -101,7 +101,7 @@ TEST(MotionGate, limits_that_are_none_are_refused) {
   EXPECT_TRUE(refused([](auto& c) { c.max_start_mm = 0.0; }));
   EXPECT_TRUE(refused([](auto& c) { c.max_step_rad = kNan; }));
   EXPECT_TRUE(refused([](auto& c) { c.max_speed_mm_s = -1.0; }));
-  EXPECT_TRUE(refused([](auto& c) { c.max_jerk_mm_s3 = INFINITY; }));
+  EXPECT_TRUE(refused([](auto& c) { c.max_jerk_mm_s3 = std::numeric_limits<double>::infinity(); }));
   EXPECT_TRUE(refused([](auto& c) { c.workspace.low_mm.y() = 1e9; }));
 }
 
