@@ -14,8 +14,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kMinChordMm = 1e-6;
-constexpr double kMinOpening =
-    0.05;  // rad; flatter or sharper joints have no bisector to speak of.
 constexpr double kFewestInWindow = 2.6;  // Half width of the window in point distances, at least.
 
 bool in(double v, double low, double high) noexcept { return v >= low && v <= high; }
