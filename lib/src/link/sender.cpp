@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::int64_t kLeastSilenceNs = 4'000'000;
 constexpr std::int64_t kMostSilenceNs = 200'000'000;
+constexpr std::uint32_t kMostPointsUnderWayClassic = 4;
 
 bool sensible(const Sender::Config& config) noexcept {
   return config.silence_limit_ns >= kLeastSilenceNs && config.silence_limit_ns <= kMostSilenceNs &&
@@ -27,7 +28,15 @@ bool at_rest(RobotState state) noexcept {
 }  // namespace
 
 Result<Sender> Sender::make(const Config& config) noexcept {
-  return sensible(config) ? Result<Sender>(Sender(config)) : Errc::kInvalidArgument;
+  if (!sensible(config)) {
+    return Errc::kInvalidArgument;
+  }
+  Config paced = config;
+  if (config.addressing.classic) {
+    // A point takes eight frames of the queue there.
+    paced.window_points = std::min(config.window_points, kMostPointsUnderWayClassic);
+  }
+  return Sender(paced);
 }
 
 Result<> Sender::connect(std::uint32_t session, std::int64_t now_ns) noexcept {

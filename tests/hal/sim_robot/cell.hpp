@@ -43,12 +43,14 @@ class LinkCell {
         sender_(link::Sender::make(sender).value()) {}
 
   link::WeldProgress step(const link::WeldOrder& weld) {
-    clock_.advance(kStepNs);
-    const std::int64_t now_ns = clock_.now_ns();
-    const link::WeldProgress progress = link::give_next_order(sender_, weld, now_ns);
-    port_.turn(sender_, now_ns);
-    robot_.step(now_ns);
+    const link::WeldProgress progress = link::give_next_order(sender_, weld, clock_.now_ns());
+    step_without_orders();
     return progress;
+  }
+  void step_without_orders() {
+    clock_.advance(kStepNs);
+    port_.turn(sender_, clock_.now_ns());
+    robot_.step(clock_.now_ns());
   }
   link::WeldProgress run(const link::WeldOrder& weld, int most_steps) {
     link::WeldProgress progress = link::WeldProgress::kUnderWay;

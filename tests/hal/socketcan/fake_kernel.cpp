@@ -10,6 +10,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "support/allocation_counter.hpp"
+
 namespace dseam::test {
 
 int FakeKernel::fails() {
@@ -67,6 +69,7 @@ bool FakeKernel::wants(const Socket& socket, const Message& message) {
 }
 
 void FakeKernel::deliver(const Message& message, int from) {
+  const AllocationCounter counter;
   for (auto& [fd, socket] : sockets_) {
     const bool own = fd == from;
     if (!wants(socket, message) || (own && !socket.own)) {
@@ -79,6 +82,7 @@ void FakeKernel::deliver(const Message& message, int from) {
     socket.inbox.push_back(message);
     socket.inbox.back().flags = own ? MSG_DONTROUTE | MSG_CONFIRM : MSG_DONTROUTE;
   }
+  allocations_ += counter.count();
 }
 
 int FakeKernel::open_socket(int, int, int) noexcept {

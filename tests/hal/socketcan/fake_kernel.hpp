@@ -29,6 +29,8 @@ class FakeKernel final : public hal::socketcan::CanSys {
   [[nodiscard]] int calls() const { return calls_; }
   [[nodiscard]] std::size_t open_sockets() const { return sockets_.size(); }
   [[nodiscard]] std::uint64_t sabotaged() const { return sabotaged_; }
+  /// Its own, which a real kernel would not count as the caller's.
+  [[nodiscard]] std::uint64_t allocations() const { return allocations_; }
 
   void set_up(bool up);
   void remove();
@@ -85,6 +87,7 @@ class FakeKernel final : public hal::socketcan::CanSys {
   std::int64_t now_ns_ = 1'000'000'000;
   int calls_ = 0;
   std::uint64_t sabotaged_ = 0;
+  std::uint64_t allocations_ = 0;
   Sabotage sabotage_;
   int next_fd_ = 3;
   std::map<int, Socket> sockets_;

@@ -4,9 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <string>
 
 #include "dseam/base/random.hpp"
+#include "dseam/link/crc.hpp"
 
 namespace dseam::link {
 namespace {
@@ -147,6 +151,14 @@ TEST(Codec, an_enumerator_that_does_not_exist_is_bad_data) {
   EXPECT_FALSE(decode_command(command).ok());
   EXPECT_FALSE(decode_nack(nack).ok());
   EXPECT_FALSE(decode_abort(abort).ok());
+}
+
+TEST(Codec, the_dictionary_is_the_one_this_library_was_built_from) {
+  std::ifstream file(DSEAM_DICTIONARY, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+
+  ASSERT_FALSE(text.empty());
+  EXPECT_EQ(crc32(std::as_bytes(std::span(text))), kDictionaryCrc);
 }
 
 TEST(Codec, every_message_of_another_length_is_bad_data) {

@@ -153,5 +153,7 @@ struct Hello {
 };
 
 inline constexpr std::uint8_t kProtocolVersion = 1;
+/// CRC-32 of the text of docs/weld-link.dbc: both ends were built from the same dictionary.
+inline constexpr std::uint32_t kDictionaryCrc = 0x4E4F03AA;
 
 }  // namespace dseam::link

@@ -44,7 +44,7 @@ class Receiver {
     std::int64_t stop_ns = 200'000'000;          ///< From full speed to standstill on the path.
     std::uint16_t min_period_us = 500;
     double max_speed_mm_s = 500.0;
-    std::uint32_t dictionary_crc = 0;  ///< 0 accepts any.
+    std::uint32_t dictionary_crc = kDictionaryCrc;  ///< 0 accepts any.
   };
 
   /// Counters since make(); they only rise.

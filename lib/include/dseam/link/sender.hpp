@@ -50,7 +50,7 @@ class Sender {
     std::uint32_t mark_every = 16;  ///< Points between two marks.
     std::uint32_t points_per_poll = 8;
     std::uint32_t window_points = 16;  ///< Sent and not acknowledged: what a slow bus can queue.
-    std::uint32_t dictionary_crc = 0;  ///< 0 accepts any.
+    std::uint32_t dictionary_crc = kDictionaryCrc;  ///< 0 accepts any.
   };
 
   /// Counters since make(); they only rise.

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "dseam/depth/depth_image.hpp"
+#include "dseam/geometry/ellipse.hpp"
+
+namespace dseam::markers {
+
+enum class DiscState : std::uint8_t { kDisc, kNoSurface, kNotCircular, kHole };
+
+/// A rim in the image laid onto the surface around it.
+///
+/// Frame:   camera.
+struct SurfaceDisc {
+  DiscState state = DiscState::kNoSurface;
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< Towards the camera.
+  double radius_mm = 0.0;
+  double out_of_round = 0.0;  ///< rms of the rim's points about the circle, over its radius.
+};
+
+/// Fits depth as a quadratic of the pixel to the ring around the rim, lays the rim's points on it
+/// and takes the circle through them: that corrects perspective, and the surface's curvature, too.
+///
+/// Time:    a bounded number of pixels, whatever the size of the disc.
+[[nodiscard]] SurfaceDisc lay_on_surface(const depth::DepthImage& frame,
+                                         const geometry::Ellipse& rim,
+                                         double max_hole_depth_mm) noexcept;
+
+}  // namespace dseam::markers

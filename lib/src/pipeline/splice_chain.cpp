@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dseam/pipeline/splice_chain.hpp"
+
+#include <algorithm>
+
+namespace dseam::pipeline {
+namespace {
+
+using splice::LiveSplicer;
+using splice::NetworkReport;
+using splice::PatchField;
+
+std::size_t max_landmarks(const SpliceChain::Capacity& c) noexcept {
+  return c.max_views * c.max_markers_a_view;
+}
+
+}  // namespace
+
+std::size_t SpliceChain::bytes(const Capacity& c) noexcept {
+  const std::size_t a_view =
+      Arena::bytes<splice::SurfacePatch>(PatchField::size_for(c.width, c.height)) +
+      Arena::bytes<markers::Marker>(c.max_markers_a_view) +
+      Arena::bytes<std::uint16_t>(c.max_markers_a_view);
+  return markers::MarkerFinder::bytes(c.width) + markers::MarkerMatcher::bytes(max_landmarks(c)) +
+         splice::ViewNetwork::bytes() + c.max_views * a_view +
+         Arena::bytes<ViewStore>(c.max_views) + Arena::bytes<splice::PosedView>(c.max_views) +
+         Arena::bytes<splice::NetworkView>(c.max_views) +
+         Arena::bytes<Eigen::Vector3d>(max_landmarks(c)) +
+         Arena::bytes<splice::MarkerSight>(max_landmarks(c)) +
+         Arena::bytes<Eigen::Vector3d>(c.max_markers_a_view) +
+         Arena::bytes<geometry::Ellipse>(c.max_markers_a_view);
+}
+
+Result<SpliceChain> SpliceChain::make(const Config& config, const Capacity& c,
+                                      Arena& arena) noexcept {
+  if (c.max_views == 0 || c.max_views > cloud::kMaxViews || c.max_markers_a_view < 3 ||
+      max_landmarks(c) >= kNoLandmark) {
+    return Errc::kInvalidArgument;
+  }
+  SpliceChain chain(config, c);
+  const auto finder = markers::MarkerFinder::make(config.finder, c.width, arena);
+  const auto matcher = markers::MarkerMatcher::make(config.matcher, max_landmarks(c), arena);
+  const auto network = splice::ViewNetwork::make(config.network, arena);
+  if (!finder.ok() || !matcher.ok() || !network.ok()) {
+    return !finder.ok() ? finder.error() : !matcher.ok() ? matcher.error() : network.error();
+  }
+  chain.finder_ = finder.value();
+  chain.matcher_ = matcher.value();
+  chain.network_ = network.value();
+  chain.stores_ = arena.take<ViewStore>(c.max_views);
+  for (ViewStore& store : chain.stores_) {
+    store.patches = arena.take<splice::SurfacePatch>(PatchField::size_for(c.width, c.height));
+    store.markers = Buffer(arena.take<markers::Marker>(c.max_markers_a_view));
+    store.landmarks = arena.take<std::uint16_t>(c.max_markers_a_view);
+  }
+  chain.posed_ = arena.take<splice::PosedView>(c.max_views);
+  chain.inputs_ = arena.take<splice::NetworkView>(c.max_views);
+  chain.landmarks_ = Buffer(arena.take<Eigen::Vector3d>(max_landmarks(c)));
+  chain.sights_ = Buffer(arena.take<splice::MarkerSight>(max_landmarks(c)));
+  chain.places_ = arena.take<Eigen::Vector3d>(c.max_markers_a_view);
+  chain.hidden_ = arena.take<geometry::Ellipse>(c.max_markers_a_view);
+  if (arena.exhausted()) {
+    return Errc::kOutOfMemory;
+  }
+  return chain;
+}
+
+void SpliceChain::clear() noexcept {
+  num_views_ = 0;
+  landmarks_.clear();
+  sights_.clear();
+}
+
+bool SpliceChain::fits(const depth::DepthImage& frame) const noexcept {
+  const depth::Intrinsics& k = frame.intrinsics;
+  return num_views_ < stores_.size() && k.width == capacity_.width &&
+         k.height == capacity_.height && frame.depth.size() == std::size_t{k.width} * k.height &&
+         k.fx > 0.0 && k.fy > 0.0;
+}
+
+SpliceChain::ViewReport SpliceChain::add(const depth::DepthImage& frame,
+                                         const splice::ReportedPose& reported) noexcept {
+  ViewReport report;
+  if (!fits(frame)) {
+    report.live.state = LiveSplicer::State::kNotTakenIn;
+    return report;
+  }
+  extract(frame, report);
+  place(reported, report);
+  ++num_views_;
+  return report;
+}
+
+void SpliceChain::extract(const depth::DepthImage& frame, ViewReport& report) noexcept {
+  ViewStore& store = stores_[num_views_];
+  report.markers = finder_->run(frame, store.markers);
+  std::fill(store.landmarks.begin(), store.landmarks.end(), kNoLandmark);
+  const std::size_t n = store.markers.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    places_[i] = store.markers[i].p_camera;
+    hidden_[i] = store.markers[i].ellipse;
+  }
+  report.patches = patches_.run(frame, hidden_.first(n), store.patches);
+  const std::uint32_t columns = capacity_.width / PatchField::kBlockPx;
+  const std::uint32_t rows = capacity_.height / PatchField::kBlockPx;
+  posed_[num_views_] = {};
+  posed_[num_views_].field = {frame.intrinsics, columns, rows,
+                              store.patches.first(std::size_t{columns} * rows)};
+}
+
+// By the markers when they are sure, else by the report; then surface against surface.
+void SpliceChain::place(const splice::ReportedPose& reported, ViewReport& report) noexcept {
+  splice::PosedView& view = posed_[num_views_];
+  const bool by_markers = match(reported, report);
+  view.place(by_markers ? report.match.T_a_b : reported.T_base_camera);
+  const bool first = num_views_ == 0;
+  const bool guessed = by_markers || reported.known || first;
+  report.live.T_base_camera = view.T_base_camera;
+  if (guessed) {
+    report.live = live_.run(view, posed_.first(num_views_));
+    view.place(report.live.T_base_camera);
+  }
+  const bool stands = first || by_markers || report.live.state == LiveSplicer::State::kSpliced;
+  view.used = stands;
+  enter_landmarks(stands);
+  inputs_[num_views_] = {view.field, reported, view.T_base_camera, guessed};
+}
+
+bool SpliceChain::match(const splice::ReportedPose& reported, ViewReport& report) noexcept {
+  const auto in_view =
+      std::span<const Eigen::Vector3d>(places_.first(stores_[num_views_].markers.size()));
+  if (num_views_ == 0 || in_view.size() < 3 || landmarks_.size() < 3) {
+    return false;
+  }
+  if (reported.known) {
+    report.match = matcher_->run(landmarks_.view(), in_view, reported.T_base_camera);
+  }
+  if (report.match.state != markers::MatchState::kMatched) {
+    // The report may be wrong, and with it the frame of those before.
+    report.match = matcher_->run(landmarks_.view(), in_view, std::nullopt);
+  }
+  return report.match.state == markers::MatchState::kMatched;
+}
+
+// A marker near a known one is that one; of the others each is new.
+void SpliceChain::enter_landmarks(bool placed) noexcept {
+  constexpr double kSameMm = 0.8;
+  ViewStore& store = stores_[num_views_];
+  const std::size_t known = landmarks_.size();
+  for (std::size_t i = 0; placed && i < store.markers.size(); ++i) {
+    const Eigen::Vector3d p = posed_[num_views_].T_base_camera * store.markers[i].p_camera;
+    double nearest = kSameMm;
+    for (std::size_t k = 0; k < known; ++k) {
+      const double distance = (landmarks_[k] - p).norm();
+      if (distance < nearest) {
+        nearest = distance;
+        store.landmarks[i] = static_cast<std::uint16_t>(k);
+      }
+    }
+    if (store.landmarks[i] == kNoLandmark && landmarks_.append(p)) {
+      store.landmarks[i] = static_cast<std::uint16_t>(landmarks_.size() - 1);
+    }
+  }
+}
+
+std::span<const markers::Marker> SpliceChain::markers(std::size_t view) const noexcept {
+  return view < num_views_ ? stores_[view].markers.view() : std::span<const markers::Marker>{};
+}
+
+void SpliceChain::collect_sights() noexcept {
+  sights_.clear();
+  for (std::size_t k = 0; k < landmarks_.size(); ++k) {
+    for (std::size_t v = 0; v < num_views_; ++v) {
+      const ViewStore& store = stores_[v];
+      for (std::size_t i = 0; i < store.markers.size(); ++i) {
+        if (store.landmarks[i] == k) {
+          const markers::Marker& m = store.markers[i];
+          (void)sights_.append({static_cast<std::uint16_t>(v), static_cast<std::uint16_t>(k),
+                                m.p_camera, m.covariance_mm2});
+        }
+      }
+    }
+  }
+}
+
+NetworkReport SpliceChain::finish(Buffer<splice::SplicedView>& out) noexcept {
+  collect_sights();
+  return network_->run(inputs_.first(num_views_), sights_.view(), out);
+}
+
+NetworkReport SpliceChain::run(std::span<const depth::DepthImage> frames,
+                               std::span<const splice::ReportedPose> reported,
+                               Buffer<splice::SplicedView>& out) noexcept {
+  clear();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    (void)add(frames[i], i < reported.size() ? reported[i] : splice::ReportedPose{});
+  }
+  return finish(out);
+}
+
+}  // namespace dseam::pipeline

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+
+#include "dseam/splice/view_network.hpp"
+#include "splice/network_ties.hpp"
+#include "splice/surface_ties.hpp"
+
+namespace dseam::splice {
+
+/// The adjustment in progress; what run() keeps on the stack.
+struct Adjustment {
+  const ViewNetwork::Config& config;
+  BlockSystem& system;
+  std::span<const NetworkView> inputs;
+  std::span<const MarkerSight> sights;
+  std::span<PosedView> views;
+  Buffer<SplicedView>& out;
+  NetworkReport report{};
+
+  SurfaceStatistics surface{};
+  MarkerStatistics markers{};
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();
+  double sigma_mm = 0.0;
+  double ties_per_independent = 1.0;
+
+  [[nodiscard]] std::size_t bowl_at() const noexcept { return 6 * inputs.size(); }
+  [[nodiscard]] std::size_t num_used() const noexcept {
+    return static_cast<std::size_t>(
+        std::count_if(views.begin(), views.end(), [](const PosedView& view) { return view.used; }));
+  }
+
+  void take_in() noexcept;
+  void choose_pivot() noexcept;
+  void vote_on_base() noexcept;
+  void adjust() noexcept;
+  double step(double gate_mm) noexcept;
+  void add_reports() noexcept;
+  bool leave_out_worst() noexcept;
+  void leave_out_unlinked() noexcept;
+  void fill_covariances() noexcept;
+  void fill_views() noexcept;
+};
+
+}  // namespace dseam::splice

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "splice/surface_ties.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace dseam::splice {
+namespace {
+
+using Row6 = Eigen::Matrix<double, 1, 6>;
+
+constexpr double kMinNormalAgreement = 0.9;
+constexpr std::uint32_t kMinTiesOfALink = 20;
+
+// One view's height over the reference along its normal, and what the height depends on.
+struct Member {
+  std::size_t view = 0;
+  double height = 0.0;
+  double weight = 1.0;
+  Row6 j = Row6::Zero();
+  Eigen::Vector2d b = Eigen::Vector2d::Zero();
+};
+
+struct Group {
+  std::array<Member, cloud::kMaxViews> members;
+  std::size_t count = 0;
+
+  void add(std::size_t view, const SurfaceSight& sight, const SurfaceSight& reference,
+           const Eigen::Vector3d& pivot, double gate_mm) noexcept {
+    Member& m = members[count++];
+    m.view = view;
+    m.height = reference.n_base.dot(sight.p_base - reference.p_base);
+    const double s = m.height / gate_mm;
+    m.weight = std::max(1e-6, (1.0 - s * s) * (1.0 - s * s));
+    m.j << reference.n_base.transpose(), (sight.p_base - pivot).cross(reference.n_base).transpose();
+    m.b = sight.bowl_mm_per_mm;
+  }
+};
+
+// The common height is eliminated: what remains are differences to the weighted mean.
+void add_group(const Group& group, double weight, std::size_t bowl_at,
+               BlockSystem& system) noexcept {
+  double sum_w = 0.0;
+  double mean = 0.0;
+  Eigen::Vector2d mean_b = Eigen::Vector2d::Zero();
+  for (std::size_t m = 0; m < group.count; ++m) {
+    sum_w += group.members[m].weight;
+    mean += group.members[m].weight * group.members[m].height;
+    mean_b += group.members[m].weight * group.members[m].b;
+  }
+  mean /= sum_w;
+  mean_b /= sum_w;
+  const double c = weight / static_cast<double>(group.count);
+  for (std::size_t m = 0; m < group.count; ++m) {
+    const Member& a = group.members[m];
+    const double w = c * a.weight;
+    const Eigen::Vector2d b = a.b - mean_b;
+    system.add(6 * a.view, 6 * a.view,
+               Eigen::Matrix<double, 6, 6>(w * (1.0 - a.weight / sum_w) * a.j.transpose() * a.j));
+    system.add(6 * a.view, bowl_at,
+               Eigen::Matrix<double, 6, 2>(w * a.j.transpose() * b.transpose()));
+    system.add(bowl_at, bowl_at, Eigen::Matrix2d(w * b * b.transpose()));
+    system.add_gradient(6 * a.view, geometry::Vector6(w * (a.height - mean) * a.j.transpose()));
+    system.add_gradient(bowl_at, Eigen::Vector2d(w * (a.height - mean) * b));
+    for (std::size_t n = m + 1; n < group.count; ++n) {
+      const Member& other = group.members[n];
+      system.add(
+          6 * a.view, 6 * other.view,
+          Eigen::Matrix<double, 6, 6>(-w * other.weight / sum_w * a.j.transpose() * other.j));
+    }
+  }
+}
+
+// Residuals of one pair of views along a row of references, the last three kept.
+struct Trail {
+  std::array<double, 3> last{};
+  std::array<bool, 3> known{};
+
+  void push(bool valid, double residual) noexcept {
+    last = {residual, last[0], last[1]};
+    known = {valid, known[0], known[1]};
+  }
+};
+
+class Walk {
+ public:
+  Walk(std::span<const PosedView> views, const Eigen::Vector3d& pivot,
+       const Eigen::Vector2d& bowl_mm, const SurfaceTieConfig& config, std::size_t bowl_at,
+       BlockSystem& system, SurfaceStatistics& statistics) noexcept
+      : views_(views),
+        pivot_(pivot),
+        bowl_mm_(bowl_mm),
+        config_(config),
+        bowl_at_(bowl_at),
+        system_(system),
+        statistics_(statistics) {}
+
+  std::uint32_t over(std::size_t reference_view) noexcept {
+    const PatchField& field = views_[reference_view].field;
+    for (std::uint32_t row = 0; row < field.rows; row += kReferenceStride) {
+      trails_ = {};
+      for (std::uint32_t column = 0; column < field.columns; column += kReferenceStride) {
+        const Eigen::Vector2d c = field.centre_px(column, row);
+        tie(reference_view, sight_at(views_[reference_view], c.x(), c.y(), bowl_mm_));
+      }
+    }
+    return ties_;
+  }
+
+ private:
+  void tie(std::size_t reference_view, const SurfaceSight& reference) noexcept {
+    Group group;
+    if (reference.valid) {
+      group.add(reference_view, reference, reference, pivot_, config_.gate_mm);
+    }
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+      if (v == reference_view || !views_[v].used) {
+        continue;
+      }
+      const SurfaceSight sight =
+          reference.valid ? sight_of(views_[v], reference, bowl_mm_) : SurfaceSight{};
+      const double height = reference.n_base.dot(sight.p_base - reference.p_base);
+      const bool near = sight.valid && std::abs(height) < config_.gate_mm;
+      note(reference_view, v, sight.valid, near, height);
+      if (near) {
+        group.add(v, sight, reference, pivot_, config_.gate_mm);
+      }
+    }
+    if (group.count >= 2) {
+      add_group(group, config_.weight, bowl_at_, system_);
+      ties_ += static_cast<std::uint32_t>(group.count - 1);
+    }
+  }
+
+  void note(std::size_t a, std::size_t b, bool valid, bool near, double height) noexcept {
+    if (valid && std::abs(height) < config_.wide_gate_mm) {
+      ++statistics_.wide[a];
+      ++statistics_.wide[b];
+    }
+    if (near) {
+      ++statistics_.near[a];
+      ++statistics_.near[b];
+      statistics_.squares[a] += height * height;
+      statistics_.squares[b] += height * height;
+      statistics_.products[0] += height * height;
+      statistics_.pairs[0] += 1.0;
+      for (std::size_t lag = 0; lag < 3; ++lag) {
+        if (trails_[b].known[lag]) {
+          statistics_.products[lag + 1] += height * trails_[b].last[lag];
+          statistics_.pairs[lag + 1] += 1.0;
+        }
+      }
+      ++links_[b];
+      if (links_[b] >= kMinTiesOfALink) {
+        statistics_.linked[a] = static_cast<cloud::ViewMask>(statistics_.linked[a] | (1U << b));
+        statistics_.linked[b] = static_cast<cloud::ViewMask>(statistics_.linked[b] | (1U << a));
+      }
+    }
+    trails_[b].push(near, height);
+  }
+
+  std::span<const PosedView> views_;
+  const Eigen::Vector3d& pivot_;
+  const Eigen::Vector2d& bowl_mm_;
+  const SurfaceTieConfig& config_;
+  std::size_t bowl_at_;
+  BlockSystem& system_;
+  SurfaceStatistics& statistics_;
+  std::array<Trail, cloud::kMaxViews> trails_{};
+  std::array<std::uint32_t, cloud::kMaxViews> links_{};
+  std::uint32_t ties_ = 0;
+};
+
+}  // namespace
+
+Eigen::Vector2d bowl_shape(const depth::Intrinsics& k, double u, double v) noexcept {
+  const double x = (u - k.cx) / (0.5 * k.width);
+  const double y = (v - k.cy) / (0.5 * k.height);
+  return {x * x, y * y};
+}
+
+SurfaceSight sight_at(const PosedView& view, double u, double v,
+                      const Eigen::Vector2d& bowl_mm) noexcept {
+  const SurfacePoint s = surface_at(view.field, u, v);
+  if (!s.valid) {
+    return {};
+  }
+  const Eigen::Vector2d shape = bowl_shape(view.field.intrinsics, u, v);
+  const Eigen::Vector3d ray = s.p_camera / s.p_camera.z();
+  const Eigen::Vector3d p = s.p_camera - ray * bowl_mm.dot(shape);
+  return {true, view.T_base_camera * p, view.T_base_camera.rotation * s.n_camera,
+          -s.n_camera.dot(ray) * shape};
+}
+
+SurfaceSight sight_of(const PosedView& view, const SurfaceSight& other,
+                      const Eigen::Vector2d& bowl_mm) noexcept {
+  const Eigen::Vector3d p = view.T_camera_base * other.p_base;
+  if (!(p.z() > 1.0)) {
+    return {};
+  }
+  const depth::Intrinsics& k = view.field.intrinsics;
+  SurfaceSight sight =
+      sight_at(view, k.fx * p.x() / p.z() + k.cx, k.fy * p.y() / p.z() + k.cy, bowl_mm);
+  sight.valid = sight.valid && sight.n_base.dot(other.n_base) > kMinNormalAgreement;
+  return sight;
+}
+
+double SurfaceStatistics::sigma_mm() const noexcept {
+  // A residual is the difference of two patches.
+  return pairs[0] > 0.0 ? std::sqrt(0.5 * products[0] / pairs[0]) : 0.0;
+}
+
+double SurfaceStatistics::ties_per_independent() const noexcept {
+  if (!(products[0] > 0.0)) {
+    return 1.0;
+  }
+  const double variance = products[0] / pairs[0];
+  double along_a_row = 1.0;
+  for (std::size_t lag = 1; lag < pairs.size(); ++lag) {
+    const double share = pairs[lag] > 0.0 ? products[lag] / pairs[lag] / variance : 0.0;
+    along_a_row += 2.0 * std::clamp(share, 0.0, 1.0);
+  }
+  return along_a_row * along_a_row;
+}
+
+std::uint32_t add_surface_ties(std::span<const PosedView> views, const Eigen::Vector3d& pivot,
+                               const Eigen::Vector2d& bowl_mm, const SurfaceTieConfig& config,
+                               std::size_t bowl_at, BlockSystem& system,
+                               SurfaceStatistics& statistics) noexcept {
+  std::uint32_t ties = 0;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    if (views[v].used) {
+      Walk walk(views, pivot, bowl_mm, config, bowl_at, system, statistics);
+      ties += walk.over(v);
+    }
+  }
+  return ties;
+}
+
+}  // namespace dseam::splice
