@@ -10,11 +10,11 @@
 namespace dseam::cloud {
 namespace {
 
+using lanes::FloatLanes;
+using lanes::IntLanes;
+using lanes::kLanes;
+using lanes::splat;
 using search::CellKey;
-using search::FloatLanes;
-using search::IntLanes;
-using search::kLanes;
-using search::splat;
 using search::VoxelHash;
 
 constexpr float kMaxAxis = static_cast<float>(CellKey::kMaxAxis);
@@ -38,14 +38,14 @@ struct AxisCells {
 // What is out of range counts as 0 until it is dropped; no other value reaches an integer.
 [[gnu::always_inline]] inline void split(const FloatLanes& lattice, const IntLanes& in_range,
                                          AxisCells& axis) noexcept {
-  const FloatLanes safe = search::keep(in_range, lattice);
-  const IntLanes cell = search::floor_to_int(safe);
+  const FloatLanes safe = lanes::keep(in_range, lattice);
+  const IntLanes cell = lanes::floor_to_int(safe);
   store(cell, axis.cell);
-  store(search::to_int((safe - search::to_float(cell)) * splat(kStepsPerCell)), axis.step);
+  store(lanes::to_int((safe - lanes::to_float(cell)) * splat(kStepsPerCell)), axis.step);
 }
 
 [[gnu::always_inline]] inline IntLanes in_range(const FloatLanes& lattice) noexcept {
-  return search::magnitude(lattice) < splat(kMaxAxis);  // False for what is not a number.
+  return lanes::magnitude(lattice) < splat(kMaxAxis);  // False for what is not a number.
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ VoxelMap::Report VoxelMap::insert(const CloudView& cloud, std::size_t view) noex
   Report report;
   Run run;
   for (std::size_t i = 0; i < whole; i += kLanes) {
-    insert_eight(search::load(&cloud.x[i]), search::load(&cloud.y[i]), search::load(&cloud.z[i]),
+    insert_eight(lanes::load(&cloud.x[i]), lanes::load(&cloud.y[i]), lanes::load(&cloud.z[i]),
                  0xFFU, seen_by, run, report);
   }
   if (const std::size_t rest = cloud.size() - whole; rest > 0) {
@@ -102,7 +102,7 @@ VoxelMap::Report VoxelMap::insert(const CloudView& cloud, std::size_t view) noex
     std::copy_n(&cloud.x[whole], rest, x);
     std::copy_n(&cloud.y[whole], rest, y);
     std::copy_n(&cloud.z[whole], rest, z);
-    insert_eight(search::load(x), search::load(y), search::load(z), (1U << rest) - 1U, seen_by, run,
+    insert_eight(lanes::load(x), lanes::load(y), lanes::load(z), (1U << rest) - 1U, seen_by, run,
                  report);
   }
   close(run, seen_by, report);
@@ -122,7 +122,7 @@ void VoxelMap::insert_eight(const FloatLanes& x, const FloatLanes& y, const Floa
   split(lx, usable, ax);
   split(ly, usable, ay);
   split(lz, usable, az);
-  std::uint32_t left = valid & search::bits(usable);
+  std::uint32_t left = valid & lanes::bits(usable);
   report.dropped_out_of_range += static_cast<std::uint32_t>(std::popcount(valid ^ left));
   for (; left != 0; left &= left - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(left));

@@ -5,10 +5,17 @@
 #include <array>
 #include <utility>
 
-#include "dseam/search/lanes.hpp"
+#include "dseam/base/lanes.hpp"
 
 namespace dseam::search {
 namespace {
+
+using lanes::FloatLanes;
+using lanes::IntLanes;
+using lanes::kLanes;
+using lanes::load;
+using lanes::shift_left;
+using lanes::splat;
 
 constexpr int kBitsPerAxis = 10;
 constexpr float kLastCell = 1023.0F;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "dseam/base/expects.hpp"
 #include "dseam/search/grid_index.hpp"
@@ -11,6 +12,8 @@
 
 namespace dseam::search {
 namespace {
+
+using lanes::splat;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -21,34 +24,59 @@ struct LeastDistances {
 
   LeastDistances() noexcept { least.fill(splat(kInfinity)); }
   [[gnu::always_inline]] void insert(FloatLanes squared) noexcept {
-    for (FloatLanes& kept : least) {
-      const FloatLanes nearer = min(kept, squared);
-      squared = max(kept, squared);
-      kept = nearer;
-    }
+    insert_each(squared, std::make_index_sequence<kRoom>{});
+  }
+
+ private:
+  // Written out, so that short lists stay in registers.
+  template <std::size_t... kPlaces>
+  [[gnu::always_inline]] void insert_each(FloatLanes squared,
+                                          std::index_sequence<kPlaces...>) noexcept {
+    (insert_at(least[kPlaces], squared), ...);
+  }
+  [[gnu::always_inline]] static void insert_at(FloatLanes& kept, FloatLanes& squared) noexcept {
+    const FloatLanes nearer = min(kept, squared);
+    squared = max(kept, squared);
+    kept = nearer;
   }
 };
 
-// Fills `distances` for the eight points of `start`; a point is no neighbour of its own.
+// A point is no neighbour of its own.
+template <std::size_t kRoom>
+void insert_own(const QueryCell& query, const Cell& own, LeastDistances<kRoom>& best) noexcept {
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    best.insert(select(query.is_lane(i), splat(kInfinity), query.squared_distances(own, i)));
+  }
+}
+
+template <std::size_t kRoom>
+void insert_other(const QueryCell& query, const Cell& cell, LeastDistances<kRoom>& best) noexcept {
+  LeastDistances<kRoom> local = best;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    local.insert(query.squared_distances(cell, i));
+  }
+  best = local;
+}
+
+// For the eight points of `start`.
 template <std::size_t kRoom>
 void least_distances(const CellTree& tree, std::uint32_t start, std::size_t k,
-                     LeastDistances<kRoom>& distances) noexcept {
+                     LeastDistances<kRoom>& best) noexcept {
   const QueryCell query(tree.cells()[start]);
-  LeastDistances<kRoom> best;
-  const auto reach = [&]() noexcept { return Reach{largest(best.least[k - 1]), 0}; };
+  FloatLanes farthest = splat(kInfinity);
+  Reach of_all{kInfinity, 0};
+  const auto reach = [&]() noexcept { return of_all; };
   tree.visit_around(start, tree.box_of(start), reach, [&](std::uint32_t at) noexcept {
-    const Cell& cell = tree.cells()[at];
     if (at == start) {
-      for (std::size_t i = 0; i < kLanes; ++i) {
-        best.insert(select(query.is_lane(i), splat(kInfinity), query.squared_distances(cell, i)));
-      }
-    } else if (query.any_nearer(tree.box_of(at), best.least[k - 1])) {
-      for (std::size_t i = 0; i < kLanes; ++i) {
-        best.insert(query.squared_distances(cell, i));
-      }
+      insert_own(query, tree.cells()[at], best);
+    } else if (query.any_nearer(tree.box_of(at), farthest)) {
+      insert_other(query, tree.cells()[at], best);
+    } else {
+      return;
     }
+    farthest = best.least[k - 1];
+    of_all.squared_mm2 = largest(farthest);
   });
-  distances = best;
 }
 
 // As many as there are others, so that no infinite distance enters.

@@ -10,6 +10,8 @@
 namespace dseam::search {
 namespace {
 
+using lanes::splat;
+
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 bool is_in_range(geometry::Vec3f p) noexcept {

@@ -48,9 +48,9 @@ class NearestList {
 /// Squared distances of one point to the eight of a cell; infinite for unused places.
 [[nodiscard]] inline FloatLanes squared_distances(const Cell& cell, float x, float y,
                                                   float z) noexcept {
-  const FloatLanes dx = load(cell.x) - splat(x);
-  const FloatLanes dy = load(cell.y) - splat(y);
-  const FloatLanes dz = load(cell.z) - splat(z);
+  const FloatLanes dx = lanes::load(cell.x) - lanes::splat(x);
+  const FloatLanes dy = lanes::load(cell.y) - lanes::splat(y);
+  const FloatLanes dz = lanes::load(cell.z) - lanes::splat(z);
   return dx * dx + dy * dy + dz * dz;
 }
 

@@ -91,15 +91,60 @@ struct FusedCloudView {
   std::span<const ViewMask> seen_by;
 };
 
+/// Whether a point has a normal, or why not.
+enum class NormalState : std::uint8_t {
+  kGood,
+  kTooFew,     ///< Not enough neighbours.
+  kCollinear,  ///< They lie on a line or in one place.
+  kAmbiguous,  ///< They spread alike in two directions, so that no plane fits better than others.
+};
+
 /// What normal estimation adds to a cloud, one entry a point.
 ///
-/// Shape:   unit normals; (0, 0, 0) where the neighbourhood is degenerate, never a made-up one.
+/// Shape:   unit normals; (0, 0, 0) where `state` is not kGood, never a made-up one.
 struct NormalsView {
   std::span<const float> nx;
   std::span<const float> ny;
   std::span<const float> nz;
   std::span<const float>
       variation;  ///< Smallest eigenvalue over the sum of all three, in [0, 1/3].
+  std::span<const NormalState> state{};  ///< May be empty.
+};
+
+/// Lent arrays for normals.
+struct NormalsBuffer {
+  std::span<float> nx;
+  std::span<float> ny;
+  std::span<float> nz;
+  std::span<float> variation;
+  std::span<NormalState> state;
+
+  [[nodiscard]] static constexpr std::size_t bytes(std::size_t max_points) noexcept {
+    return 4 * Arena::bytes<float>(max_points) + Arena::bytes<NormalState>(max_points);
+  }
+  NormalsBuffer() = default;
+  NormalsBuffer(std::size_t max_points, Arena& arena) noexcept
+      : nx(arena.take<float>(max_points)),
+        ny(arena.take<float>(max_points)),
+        nz(arena.take<float>(max_points)),
+        variation(arena.take<float>(max_points)),
+        state(arena.take<NormalState>(max_points)) {}
+
+  [[nodiscard]] std::size_t capacity() const noexcept { return state.size(); }
+  void set(std::size_t i, geometry::Vec3f normal, float its_variation, NormalState its) noexcept {
+    nx[i] = normal.x;
+    ny[i] = normal.y;
+    nz[i] = normal.z;
+    variation[i] = its_variation;
+    state[i] = its;
+  }
+  [[nodiscard]] geometry::Vec3f operator[](std::size_t i) const noexcept {
+    return {nx[i], ny[i], nz[i]};
+  }
+  [[nodiscard]] NormalsView view(std::size_t size) const noexcept {
+    return {nx.first(size), ny.first(size), nz.first(size), variation.first(size),
+            state.first(size)};
+  }
 };
 
 }  // namespace dseam::cloud

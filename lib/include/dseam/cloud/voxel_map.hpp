@@ -6,9 +6,9 @@
 #include <span>
 
 #include "dseam/base/arena.hpp"
+#include "dseam/base/lanes.hpp"
 #include "dseam/base/result.hpp"
 #include "dseam/cloud/cloud.hpp"
-#include "dseam/search/lanes.hpp"
 #include "dseam/search/voxel_hash.hpp"
 
 namespace dseam::cloud {
@@ -71,8 +71,8 @@ class VoxelMap {
   };
   /// For stages that make points eight at a time: adds those whose bit is set in `valid`, some of
   /// them only to `run`, which close() then adds.
-  void insert_eight(const search::FloatLanes& x, const search::FloatLanes& y,
-                    const search::FloatLanes& z, std::uint32_t valid, ViewMask seen_by, Run& run,
+  void insert_eight(const lanes::FloatLanes& x, const lanes::FloatLanes& y,
+                    const lanes::FloatLanes& z, std::uint32_t valid, ViewMask seen_by, Run& run,
                     Report& report) noexcept;
   void close(Run& run, ViewMask seen_by, Report& report) noexcept;
 

@@ -7,9 +7,13 @@
 #include <cstdint>
 #include <span>
 
-#include "dseam/search/lanes.hpp"
+#include "dseam/base/lanes.hpp"
 
 namespace dseam::search {
+
+using lanes::FloatLanes;
+using lanes::IntLanes;
+using lanes::kLanes;
 
 inline constexpr std::uint32_t kNoPoint = 0xFFFFFFFFU;
 
@@ -41,6 +45,8 @@ struct Box {
 /// Squared distances of `box` to the eight boxes of `node`. A float distance computed between any
 /// two points inside is never less: subtraction, product and sum round monotonically.
 [[nodiscard]] inline FloatLanes squared_gaps(const Node& node, const Box& box) noexcept {
+  using lanes::load;
+  using lanes::splat;
   const auto gap = [](const float* low, const float* high, float box_low, float box_high) noexcept {
     const FloatLanes outside = max(load(low) - splat(box_high), splat(box_low) - load(high));
     return max(outside, splat(0.0F));
@@ -118,8 +124,8 @@ class CellTree {
                                             Reach reach) const noexcept {
     const Node& n = node_storage_[level_begin_[level] + node];
     const FloatLanes gaps = squared_gaps(n, box);
-    const std::uint32_t nearer = bits(gaps < splat(reach.squared_mm2));
-    std::uint32_t level_with = bits(gaps <= splat(reach.squared_mm2)) & ~nearer;
+    const std::uint32_t nearer = bits(gaps < lanes::splat(reach.squared_mm2));
+    std::uint32_t level_with = bits(gaps <= lanes::splat(reach.squared_mm2)) & ~nearer;
     std::uint32_t near = nearer;
     for (; level_with != 0; level_with &= level_with - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(level_with));

@@ -10,7 +10,7 @@
 /// One AVX register, two of SSE or NEON, plain registers on a microcontroller: the compiler's own
 /// vectors do it, without intrinsics. Every operation is exact or correctly rounded lane by lane,
 /// so the width of the registers cannot change a bit of a result.
-namespace dseam::search {
+namespace dseam::lanes {
 
 inline constexpr std::size_t kLanes = 8;
 
@@ -183,11 +183,13 @@ template <int kShift>
 #endif
 }
 [[gnu::always_inline, nodiscard]] inline float largest(const FloatLanes& a) noexcept {
-  float most = a[0];
-  for (std::size_t i = 1; i < kLanes; ++i) {
-    most = a[i] > most ? a[i] : most;
-  }
-  return most;
+  typedef float Four __attribute__((vector_size(16)));
+  Four half[2];
+  std::memcpy(half, &a, sizeof half);
+  const Four most = half[0] > half[1] ? half[0] : half[1];
+  const float even = most[0] > most[2] ? most[0] : most[2];
+  const float odd = most[1] > most[3] ? most[1] : most[3];
+  return even > odd ? even : odd;
 }
 
-}  // namespace dseam::search
+}  // namespace dseam::lanes
