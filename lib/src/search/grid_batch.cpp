@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -107,7 +108,7 @@ class Rows {
  public:
   Rows(const Cell& cell, std::size_t k, const FloatLanes& farthest,
        std::span<Neighbour> found) noexcept
-      : cell_(cell) {
+      : cell_(cell), query_(cell), farthest_(farthest) {
     for (; count_ < kLanes && cell.index[count_] != kNoPoint; ++count_) {
       const std::span<Neighbour> row = found.subspan(cell.index[count_] * k, k);
       std::fill(row.begin(), row.end(), Neighbour{kNoPoint, kInfinity});
@@ -115,8 +116,10 @@ class Rows {
     }
   }
 
-  void offer(const Cell& other) noexcept {
-    for (std::size_t i = 0; i < count_; ++i) {
+  void offer(const Cell& other, const Box& box) noexcept {
+    std::uint32_t rows = query_.bits_within(box, farthest_) & ((1U << count_) - 1U);
+    for (; rows != 0; rows &= rows - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rows));
       NearestList& list = lists_[i];
       const FloatLanes squared = squared_distances(other, cell_.x[i], cell_.y[i], cell_.z[i]);
       std::uint32_t near = bits(squared <= splat(list.limit().squared_mm2));
@@ -139,6 +142,8 @@ class Rows {
 
  private:
   const Cell& cell_;
+  QueryCell query_;
+  FloatLanes farthest_;
   std::array<NearestList, kLanes> lists_;
   std::size_t count_ = 0;
 };
@@ -151,8 +156,9 @@ void rows_of_all(const CellTree& tree, std::size_t k, std::size_t num_others,
     least_distances(tree, at, std::min(k, num_others), distances);
     Rows rows(tree.cells()[at], k, distances.least[k - 1], found);
     const auto reach = [&]() noexcept { return rows.reach(); };
-    tree.visit_around(at, tree.box_of(at), reach,
-                      [&](std::uint32_t other) noexcept { rows.offer(tree.cells()[other]); });
+    tree.visit_around(at, tree.box_of(at), reach, [&](std::uint32_t other) noexcept {
+      rows.offer(tree.cells()[other], tree.box_of(other));
+    });
   }
 }
 

@@ -158,25 +158,66 @@ std::size_t GridIndex::radius(geometry::Vec3f point, float radius_mm,
   return list.sort();
 }
 
+namespace {
+
+// The points of one cell within reach of another point, behind those already found.
+class Others {
+ public:
+  Others(const Cell& own, std::size_t lane, Reach reach, std::span<Neighbour> found) noexcept
+      : own_(own), lane_(lane), limit_(reach.squared_mm2), found_(found) {}
+
+  void add(const Cell& cell) noexcept {
+    const FloatLanes squared = squared_distances(cell, own_.x[lane_], own_.y[lane_], own_.z[lane_]);
+    std::uint32_t near = bits(squared <= splat(limit_));
+    near &= &cell == &own_ ? ~(1U << lane_) : ~0U;
+    for (; near != 0; near &= near - 1, ++count_) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(near));
+      if (count_ < found_.size()) {
+        found_[count_] = {cell.index[i], squared[i]};
+      }
+    }
+  }
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+
+ private:
+  const Cell& own_;
+  std::size_t lane_;
+  float limit_;
+  std::span<Neighbour> found_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+GridIndex::NearCells GridIndex::cells_near(std::uint32_t at, Reach reach) const noexcept {
+  NearCells near;
+  const auto reach_of = [reach]() noexcept { return reach; };
+  tree_.visit_around(at, tree_.box_of(at), reach_of, [&](std::uint32_t other) noexcept {
+    near.all_fit = near.count < near.cells.size();
+    if (near.all_fit) {
+      near.cells[near.count++] = other;
+    }
+  });
+  return near;
+}
+
+std::size_t GridIndex::others_in(const NearCells& near, std::uint32_t at, std::size_t lane,
+                                 Reach reach, std::span<Neighbour> found) const noexcept {
+  Others others(tree_.cells()[at], lane, reach, found);
+  for (std::size_t i = 0; i < near.count; ++i) {
+    others.add(tree_.cells()[near.cells[i]]);
+  }
+  return others.count();
+}
+
 std::size_t GridIndex::others_within(std::uint32_t at, std::size_t lane, Reach reach,
                                      std::span<Neighbour> found) const noexcept {
   const Cell& own = tree_.cells()[at];
-  const geometry::Vec3f point{own.x[lane], own.y[lane], own.z[lane]};
-  std::size_t count = 0;
+  Others others(own, lane, reach, found);
   const auto reach_of = [reach]() noexcept { return reach; };
-  tree_.visit_around(at, box_at(point), reach_of, [&](std::uint32_t other) noexcept {
-    const Cell& cell = tree_.cells()[other];
-    const FloatLanes squared = squared_distances(cell, point.x, point.y, point.z);
-    std::uint32_t near = bits(squared <= splat(reach.squared_mm2));
-    near &= other == at ? ~(1U << lane) : ~0U;
-    for (; near != 0; near &= near - 1, ++count) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(near));
-      if (count < found.size()) {
-        found[count] = {cell.index[i], squared[i]};
-      }
-    }
-  });
-  return count;
+  tree_.visit_around(at, box_at({own.x[lane], own.y[lane], own.z[lane]}), reach_of,
+                     [&](std::uint32_t other) noexcept { others.add(tree_.cells()[other]); });
+  return others.count();
 }
 
 }  // namespace dseam::search

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -90,7 +91,16 @@ class GridIndex {
   GridIndex(std::size_t max_points, Arena& arena) noexcept;
   Report collect(const cloud::CloudView& cloud) noexcept;
   void fill_cells(const cloud::CloudView& cloud) noexcept;
+  /// The cells within reach of a cell, which its eight points share.
+  struct NearCells {
+    std::array<std::uint32_t, 96> cells;
+    std::size_t count = 0;
+    bool all_fit = true;
+  };
+  [[nodiscard]] NearCells cells_near(std::uint32_t at, Reach reach) const noexcept;
   /// Those within reach of point `lane` of a cell, without itself; returns how many there are.
+  [[nodiscard]] std::size_t others_in(const NearCells& near, std::uint32_t at, std::size_t lane,
+                                      Reach reach, std::span<Neighbour> found) const noexcept;
   [[nodiscard]] std::size_t others_within(std::uint32_t at, std::size_t lane, Reach reach,
                                           std::span<Neighbour> found) const noexcept;
   void offer_all(geometry::Vec3f point, NearestList& list) const noexcept;
@@ -109,11 +119,13 @@ std::uint32_t GridIndex::for_each_radius(float radius_mm, std::span<Neighbour> s
   const Reach reach{radius_mm * radius_mm};
   for (std::uint32_t at = 0; at < tree_.cells().size(); ++at) {
     const Cell& cell = tree_.cells()[at];
+    const NearCells near = cells_near(at, reach);
     for (std::size_t i = 0; i < kLanes && cell.index[i] != kNoPoint; ++i) {
-      const std::size_t count = others_within(at, i, reach, scratch);
+      const std::size_t count = near.all_fit ? others_in(near, at, i, reach, scratch)
+                                             : others_within(at, i, reach, scratch);
       num_cut_short += count > scratch.size() ? 1U : 0U;
-      visit(cell.index[i],
-            std::span<const Neighbour>(scratch.first(std::min(count, scratch.size()))));
+      const std::size_t kept = std::min(count, scratch.size());
+      visit(cell.index[i], std::span<const Neighbour>(scratch.first(kept)));
     }
   }
   return num_cut_short;
