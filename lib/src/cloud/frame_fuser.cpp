@@ -98,6 +98,11 @@ Result<FrameFuser> FrameFuser::make(const Config& config, std::size_t max_width,
   return stage;
 }
 
+void FrameFuser::set_box(const OrientedBox& box) noexcept {
+  DSEAM_EXPECTS(box.is_sensible());
+  config_.box = box;
+}
+
 FrameFuser::Report FrameFuser::run(const View& view, VoxelMap& map) noexcept {
   DSEAM_EXPECTS(view.number < kMaxViews);
   const depth::Intrinsics& k = view.image.intrinsics;

@@ -39,7 +39,7 @@ Result<VoxelDownsample> VoxelDownsample::make(const Config& config, std::size_t 
 
 VoxelDownsample::Report VoxelDownsample::fill(const CloudView& cloud) noexcept {
   if (config_.lattice == Lattice::kMinimumCorner) {
-    map_.move_origin(minimum_corner(cloud));
+    map_.relay(config_.cell_mm, minimum_corner(cloud));
   } else {
     map_.clear();
   }

@@ -24,6 +24,8 @@ bool is_finite(geometry::Vec3f p) noexcept {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
+bool is_sensible(float cell_mm) noexcept { return cell_mm >= 1.0e-3F && cell_mm <= 1.0e6F; }
+
 // One axis of eight points: which cell, and how far into it in steps of 2^-20 cells.
 struct AxisCells {
   alignas(32) std::int32_t cell[kLanes];
@@ -52,8 +54,7 @@ struct AxisCells {
 
 Result<VoxelMap> VoxelMap::make(const Config& config, std::size_t max_cells,
                                 Arena& arena) noexcept {
-  const bool sensible = config.cell_mm >= 1.0e-3F && config.cell_mm <= 1.0e6F;
-  if (!sensible || !is_finite(config.origin_mm)) {
+  if (!is_sensible(config.cell_mm) || !is_finite(config.origin_mm)) {
     return Errc::kInvalidArgument;
   }
   const auto hash = VoxelHash::make(max_cells, arena, config.secret);
@@ -79,9 +80,11 @@ VoxelMap::VoxelMap(const Config& config, const VoxelHash& hash, std::size_t max_
 
 void VoxelMap::clear() noexcept { hash_.clear(); }
 
-void VoxelMap::move_origin(geometry::Vec3f origin_mm) noexcept {
-  DSEAM_EXPECTS(is_finite(origin_mm));
+void VoxelMap::relay(float cell_mm, geometry::Vec3f origin_mm) noexcept {
+  DSEAM_EXPECTS(is_sensible(cell_mm) && is_finite(origin_mm));
+  config_.cell_mm = cell_mm;
   config_.origin_mm = origin_mm;
+  cells_per_mm_ = 1.0F / cell_mm;
   clear();
 }
 

@@ -49,6 +49,9 @@ class FrameFuser {
   [[nodiscard]] static Result<FrameFuser> make(const Config& config, std::size_t max_width,
                                                Arena& arena) noexcept;
 
+  /// Errors:  a box that is not sensible is a broken precondition.
+  void set_box(const OrientedBox& box) noexcept;
+
   /// A pixel flies when its depth is further than max_step_mm from both horizontal neighbours or
   /// from both vertical ones (a neighbour without depth counts as far): such a pixel mixes two
   /// surfaces, while the pixel at a true edge has one neighbour on its own.

@@ -47,8 +47,10 @@ class VoxelMap {
                                              Arena& arena) noexcept;
 
   void clear() noexcept;
-  /// Also empties the map, whose cells belonged to the old lattice.
-  void move_origin(geometry::Vec3f origin_mm) noexcept;
+  /// Lays another lattice of the same capacity; also empties the map.
+  ///
+  /// Errors:  a value that make() refuses is a broken precondition.
+  void relay(float cell_mm, geometry::Vec3f origin_mm) noexcept;
   /// `view` is under kMaxViews.
   Report insert(const CloudView& cloud, std::size_t view) noexcept;
 
