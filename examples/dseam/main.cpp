@@ -37,6 +37,7 @@ ExitCode run(int argc, char** argv) {
   app.set_version_flag("--version", DSEAM_VERSION);
   Invocation invocation;
   add_common_options(app, invocation);
+  add_weld(app, invocation);
   add_extract(app, invocation);
   add_calibrate(app, invocation);
   add_record(app, invocation);

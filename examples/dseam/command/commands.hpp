@@ -15,5 +15,6 @@ void add_extract(CLI::App& app, Invocation& invocation);
 void add_record(CLI::App& app, Invocation& invocation);
 void add_robot(CLI::App& app, Invocation& invocation);
 void add_rt_report(CLI::App& app, Invocation& invocation);
+void add_weld(CLI::App& app, Invocation& invocation);
 
 }  // namespace dseam::program

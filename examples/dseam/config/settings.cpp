@@ -40,6 +40,18 @@ std::vector<Key> seam_keys(pipeline::SeamChain::Config& c) {
   };
 }
 
+std::vector<Key> map_keys(pipeline::WeldPipeline::Config& c) {
+  return {
+      {"map", "coarse_cell_mm", &c.coarse_cell_mm, "Cells in which the seam is first sought", "mm",
+       0.1, 50},
+      {"map", "fine_cell_mm", &c.fine_cell_mm, "Cells around the seam", "mm", 0.1, 20},
+      {"map", "region_margin_mm", &c.region_margin_mm, "Kept around the seam that was first found",
+       "mm", 5, 1000},
+      {"map", "flying_step_mm", &c.flying_step_mm,
+       "A pixel this far from its neighbours mixes two surfaces", "mm", 0.1, 100},
+  };
+}
+
 std::vector<Key> hand_eye_keys(calibration::HandEyeConfig& c) {
   return {
       {"hand_eye", "flange_sigma_mm", &c.flange_sigma_mm, "Noise of the robot's reported position",
@@ -67,6 +79,7 @@ void append(std::vector<Key>& keys, const std::vector<Key>& more) {
 
 std::vector<Key> keys_of(Settings& settings) {
   std::vector<Key> keys = job_keys(settings);
+  append(keys, map_keys(settings.pipeline));
   append(keys, seam_keys(settings.seam));
   append(keys, motion_keys(settings.motion));
   append(keys, session_keys(settings.session));

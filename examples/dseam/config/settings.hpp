@@ -8,6 +8,7 @@
 #include "dseam/hal/sim/cell_config.hpp"
 #include "dseam/pipeline/motion_chain.hpp"
 #include "dseam/pipeline/seam_chain.hpp"
+#include "dseam/pipeline/weld_pipeline.hpp"
 #include "robot/weld_run.hpp"
 
 namespace dseam::program {
@@ -20,7 +21,9 @@ struct Settings {
   std::uint32_t max_points = 4'000'000;
   std::uint32_t max_seam_points = 16384;
   std::uint32_t live_views = 6;
+  std::uint32_t max_voxels = 600'000;
   pipeline::SeamChain::Config seam;
+  pipeline::WeldPipeline::Config pipeline;  ///< Its `seam` is the one above.
   calibration::HandEyeConfig hand_eye;
   pipeline::MotionChain::Config motion;
   WeldRun::Config session;

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <iostream>
+#include <memory>
+
+#include "command/commands.hpp"
+#include "files/hand_eye_file.hpp"
+#include "job/motion_job.hpp"
+#include "job/products.hpp"
+#include "job/scan_job.hpp"
+#include "job/stopwatch.hpp"
+#include "robot/drive_robot.hpp"
+#include "scan/open_scan.hpp"
+#include "scan/sim_scan.hpp"
+#include "terminal/interrupt.hpp"
+
+namespace dseam::program {
+namespace {
+
+struct Options {
+  std::string camera;
+  std::string robot = "none";
+  std::filesystem::path hand_eye;
+  std::filesystem::path out;
+  std::filesystem::path truth;
+};
+
+std::optional<geometry::RigidTransform> hand_eye_of(const Options& options, Settings& settings) {
+  if (options.hand_eye.empty()) {
+    return std::nullopt;
+  }
+  const HandEyeFile file = read_hand_eye(options.hand_eye);
+  if (settings.seam.hand_eye_sigma_mm <= 0.0) {
+    settings.seam.hand_eye_sigma_mm = file.expected_tool_mm;
+  }
+  return file.T_flange_camera;
+}
+
+void write_truth_of(const ScanSource& source, const std::filesystem::path& folder) {
+  const auto* simulated = dynamic_cast<const SimScan*>(&source);
+  if (simulated == nullptr) {
+    throw Failure(ExitCode::kUsage, "--truth: only the simulated cell knows the truth");
+  }
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !hal::sim::write_truth(simulated->cell(), folder).ok()) {
+    throw Failure(ExitCode::kUsage, folder.string() + ": cannot be written");
+  }
+}
+
+/// Plans and drives; returns what the program should end with.
+ExitCode weld_seam(const Options& options, const Settings& settings, OutputFolder& folder,
+                   const std::atomic<bool>& interrupted, Progress& progress, MotionJob& motion,
+                   JobReport& job) {
+  Stopwatch watch;
+  const trajectory::SetPointView planned = motion.plan();
+  job.stages.push_back(
+      {"motion", watch.lap_ms(), {{"set points", static_cast<double>(planned.size())}}});
+  job.path = planned;
+  if (planned.empty()) {
+    job.weld = false;
+    job.reason = motion.why();
+    return ExitCode::kRefused;
+  }
+  if (options.robot == "none") {
+    return ExitCode::kDone;
+  }
+  const DriveReport drive = drive_robot(options.robot, settings.session, motion,
+                                        folder.reserve("can.log"), interrupted, progress);
+  job.stages.push_back({"robot", watch.lap_ms(), {}});
+  job.path = motion.points();
+  job.robot = drive.facts;
+  if (!drive.finished) {
+    job.warnings.push_back(drive.fault);
+    return ExitCode::kDevice;
+  }
+  return ExitCode::kDone;
+}
+
+ExitCode run(const Options& options, const Invocation& invocation) {
+  Settings settings;
+  invocation.configure(settings);
+  if (settings.method == Method::kPaper) {
+    throw Failure(ExitCode::kUsage, "--method paper: not for this command yet");
+  }
+  check_robot_name(options.robot);
+  const auto T_flange_camera = hand_eye_of(options, settings);
+  OutputFolder folder(options.out);
+  const std::atomic<bool>& interrupted = watch_for_interrupt();
+  Progress progress;
+  Stopwatch watch;
+  const auto source = open_scan(options.camera, settings);
+  if (!options.truth.empty()) {
+    write_truth_of(*source, options.truth);
+  }
+  const std::vector<ScannedView> views =
+      take_views(*source, T_flange_camera, interrupted, progress);
+
+  JobReport job;
+  job.command = "weld";
+  job.input = source->description() + ", robot " + options.robot;
+  job.stages.push_back({"scan", watch.lap_ms(), {{"views", static_cast<double>(views.size())}}});
+  progress.say("finding the seam");
+  ScanJob scan(settings, views);
+  ExitCode code = scan.run(views, job);
+  MotionJob motion(settings, job.seam_base);
+  if (code == ExitCode::kDone) {
+    code = weld_seam(options, settings, folder, interrupted, progress, motion, job);
+  }
+  if (interrupted) {
+    throw Failure(ExitCode::kDevice, "interrupted: the arc is off, nothing was written");
+  }
+  write_products(job, folder);
+  print_summary(job, folder);
+  return code;
+}
+
+}  // namespace
+
+void add_weld(CLI::App& app, Invocation& invocation) {
+  auto* command = app.add_subcommand("weld", "scan, find the seam, plan the path, weld it");
+  auto options = std::make_shared<Options>();
+  command->add_option("--camera", options->camera, "sim, replay:SET, aravis:ID or v4l2:DEV")
+      ->required();
+  command->add_option("--robot", options->robot, "sim, can:IFACE or none")->capture_default_str();
+  command->add_option("--hand-eye", options->hand_eye, "hand_eye.json of dseam calibrate");
+  command->add_option("--truth", options->truth, "folder for the simulated cell's truth");
+  command->add_option("--out", options->out, "folder for the results")->required();
+  command->callback([options, &invocation] {
+    invocation.run = [options](const Invocation& invoked) { return run(*options, invoked); };
+  });
+}
+
+}  // namespace dseam::program

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robot/drive_robot.hpp"
+
+#include <cstdio>
+#include <memory>
+
+#include "dseam/hal/candump/recording_bus.hpp"
+#include "failure.hpp"
+#include "robot/can_robot_side.hpp"
+#include "robot/sim_robot_side.hpp"
+
+namespace dseam::program {
+namespace {
+
+constexpr std::size_t kRecordedFrames = 1U << 18U;  // Ten minutes of an armed link, each way.
+
+std::unique_ptr<RobotSide> open_robot(const std::string& robot, const WeldRun::Config& config,
+                                      const MotionJob& motion) {
+  if (robot == "sim") {
+    return std::make_unique<SimRobotSide>(motion.points().front().pose);
+  }
+  return std::make_unique<CanRobotSide>(robot.substr(4), config.link.addressing.classic);
+}
+
+void write_log(hal::candump::RecordingBus& bus, const std::filesystem::path& file) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> log(std::fopen(file.c_str(), "w"),
+                                                            &std::fclose);
+  if (log == nullptr || !bus.flush(log.get()).ok() || std::fflush(log.get()) != 0) {
+    throw Failure(ExitCode::kUsage, "can.log: cannot be written");
+  }
+}
+
+std::string fault_of(const WeldOutcome& outcome) {
+  if (outcome.interrupted) {
+    return "interrupted: the arc was turned off first";
+  }
+  if (outcome.fault != rt::Fault::kNone) {
+    return std::string("the weld was stopped: ") + rt::name(outcome.fault);
+  }
+  return std::string("the robot did not follow: ") + link::name(outcome.health.link_fault);
+}
+
+void add_facts(const WeldOutcome& outcome, const RobotSide& side, DriveReport& report) {
+  report.facts = {{"set points sent", std::to_string(outcome.link.points_sent)},
+                  {"set points sent again", std::to_string(outcome.link.points_resent)},
+                  {"cycles", std::to_string(outcome.health.cycles)},
+                  {"cycles overrun", std::to_string(outcome.health.overruns)},
+                  {"frames sent", std::to_string(outcome.health.frames_sent)},
+                  {"frames received", std::to_string(outcome.health.frames_received)}};
+  const auto more = side.facts();
+  report.facts.insert(report.facts.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+void check_robot_name(const std::string& robot) {
+  if (robot != "sim" && robot != "none" && !(robot.starts_with("can:") && robot.size() > 4)) {
+    throw Failure(ExitCode::kUsage, "--robot " + robot + ": sim, can:IFACE or none is meant");
+  }
+}
+
+DriveReport drive_robot(const std::string& robot, const WeldRun::Config& config, MotionJob& motion,
+                        const std::filesystem::path& can_log, const std::atomic<bool>& interrupted,
+                        Progress& progress) {
+  const auto side = open_robot(robot, config, motion);
+  hal::candump::RecordingBus bus(side->bus(), side->clock(), side->interface(), kRecordedFrames);
+  WeldRun weld(config, *side, bus, interrupted);
+  const WeldOutcome outcome =
+      weld.run([&](const torch::TorchPose& now) { return motion.plan_from(now); },
+               [&](std::size_t done, std::size_t total) { progress.show("welding", done, total); });
+  write_log(bus, can_log);
+  DriveReport report;
+  report.finished = outcome.finished;
+  report.fault = outcome.finished ? "" : fault_of(outcome);
+  add_facts(outcome, *side, report);
+  return report;
+}
+
+}  // namespace dseam::program

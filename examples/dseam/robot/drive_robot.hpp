@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "job/motion_job.hpp"
+#include "robot/weld_run.hpp"
+#include "terminal/progress.hpp"
+
+namespace dseam::program {
+
+/// What came of driving a robot.
+struct DriveReport {
+  bool finished = false;
+  std::string fault;  ///< Why not, as one sentence.
+  std::vector<std::pair<std::string, std::string>> facts;
+};
+
+/// Throws Failure(kUsage) for another word than `sim`, `none` or `can:IFACE`.
+void check_robot_name(const std::string& robot);
+
+/// Drives the robot named along the planned path; every frame on the bus goes to `can_log`.
+///
+/// Errors:  throws Failure(kDevice) where the bus cannot be opened.
+[[nodiscard]] DriveReport drive_robot(const std::string& robot, const WeldRun::Config& config,
+                                      MotionJob& motion, const std::filesystem::path& can_log,
+                                      const std::atomic<bool>& interrupted, Progress& progress);
+
+}  // namespace dseam::program
