@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "failure.hpp"
 #include "job/stopwatch.hpp"
 #include "job/verdict.hpp"
 

@@ -6,6 +6,7 @@
 
 #include "config/settings.hpp"
 #include "dseam/pipeline/weld_pipeline.hpp"
+#include "failure.hpp"
 #include "job/lent_memory.hpp"
 #include "report/job_report.hpp"
 #include "scan/scan.hpp"
