@@ -39,6 +39,8 @@ ExitCode run(int argc, char** argv) {
   add_common_options(app, invocation);
   add_weld(app, invocation);
   add_extract(app, invocation);
+  add_splice(app, invocation);
+  add_fit(app, invocation);
   add_calibrate(app, invocation);
   add_record(app, invocation);
   add_robot(app, invocation);

@@ -12,9 +12,11 @@ void add_calibrate(CLI::App& app, Invocation& invocation);
 void add_cameras(CLI::App& app, Invocation& invocation);
 void add_config(CLI::App& app, Invocation& invocation);
 void add_extract(CLI::App& app, Invocation& invocation);
+void add_fit(CLI::App& app, Invocation& invocation);
 void add_record(CLI::App& app, Invocation& invocation);
 void add_robot(CLI::App& app, Invocation& invocation);
 void add_rt_report(CLI::App& app, Invocation& invocation);
+void add_splice(CLI::App& app, Invocation& invocation);
 void add_weld(CLI::App& app, Invocation& invocation);
 
 }  // namespace dseam::program

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <iostream>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "command/commands.hpp"
+#include "dseam/seam/closed_curve_fit.hpp"
+#include "input/cloud_reader.hpp"
+#include "job/lent_memory.hpp"
+#include "job/products.hpp"
+#include "job/stopwatch.hpp"
+#include "job/verdict.hpp"
+#include "report/svg_chart.hpp"
+
+namespace dseam::program {
+namespace {
+
+using seam::ClosedCurveFit;
+
+struct Options {
+  std::filesystem::path points;
+  std::filesystem::path out;
+};
+
+std::vector<Eigen::Vector3d> vectors_of(const LoadedCloud& cloud) {
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    points.emplace_back(cloud.x[i], cloud.y[i], cloud.z[i]);
+  }
+  return points;
+}
+
+/// The fit in the terms of a seam report: what the points do not tell stays zero.
+seam::SeamReport seam_report_of(const ClosedCurveFit::Report& fit) {
+  seam::SeamReport report;
+  report.refusal = fit.refusal;
+  report.closed = fit.refusal == seam::Refusal::kNone;
+  report.length_mm = fit.length_mm;
+  report.num_points = fit.num_points;
+  report.joint.shell = fit.shell;
+  report.joint.nozzle = fit.nozzle;
+  report.joint.axes_angle_rad = fit.axes_angle_rad;
+  report.joint.axes_offset_mm = fit.axes_offset_mm;
+  report.quality.largest_hole_rad = fit.largest_hole_rad;
+  report.quality.coverage = 1.0 - fit.largest_hole_rad / (2.0 * std::numbers::pi);
+  report.quality.lateral = fit.lateral;
+  report.quality.normal = fit.normal;
+  return report;
+}
+
+StageRow fit_row(const ClosedCurveFit::Report& fit, double ms) {
+  return {"fit",
+          ms,
+          {{"points", fit.num_points},
+           {"outliers", fit.num_outliers},
+           {"coefficients an axis", ClosedCurveFit::kCoefficients},
+           {"orthogonal rms mm", fit.orthogonal.rms_mm},
+           {"R-squared x", fit.r_squared.x()},
+           {"R-squared y", fit.r_squared.y()},
+           {"R-squared z", fit.r_squared.z()},
+           {"largest hole degrees", fit.largest_hole_rad * 180.0 / std::numbers::pi},
+           {"largest hole mm", fit.largest_hole_mm}}};
+}
+
+void print(const ClosedCurveFit::Report& fit) {
+  std::cout << "orthogonal rms " << fixed(fit.orthogonal.rms_mm, 3) << " mm; lateral "
+            << fixed(fit.lateral.rms_mm, 3) << ", normal " << fixed(fit.normal.rms_mm, 3) << " mm\n"
+            << "R-squared " << fixed(fit.r_squared.x(), 5) << ' ' << fixed(fit.r_squared.y(), 5)
+            << ' ' << fixed(fit.r_squared.z(), 5) << " with " << ClosedCurveFit::kCoefficients
+            << " coefficients an axis\n"
+            << "largest hole " << fixed(fit.largest_hole_rad * 180.0 / std::numbers::pi, 1)
+            << " degrees, " << fixed(fit.largest_hole_mm, 1) << " mm\n";
+}
+
+ExitCode run(const Options& options, const Invocation& invocation) {
+  Settings settings;
+  invocation.configure(settings);
+  OutputFolder folder(options.out);
+  Stopwatch watch;
+  const auto points = vectors_of(read_csv_points(options.points, invocation.mm_per_unit()));
+  LentMemory memory(ClosedCurveFit::bytes(points.size()) +
+                    Arena::bytes<seam::SeamPoint>(settings.max_seam_points));
+  ClosedCurveFit stage(points.size(), memory.arena());
+  Buffer<seam::SeamPoint> curve(memory.arena().take<seam::SeamPoint>(settings.max_seam_points));
+
+  const ClosedCurveFit::Report fit = stage.run(points, settings.seam.point_spacing_mm, curve);
+
+  JobReport job;
+  job.command = "fit";
+  job.input = options.points.string();
+  job.stages.push_back(fit_row(fit, watch.lap_ms()));
+  job.seam_report = seam_report_of(fit);
+  job.seam_base = view_of(curve.view(), job.seam_report);
+  job.weld = job.seam_report.weld();
+  job.reason = job.weld ? "a closed curve, " + fixed(fit.orthogonal.rms_mm, 3) + " mm rms"
+                        : reason_of(job.seam_report, settings.seam);
+  write_products(job, folder);
+  if (job.weld) {
+    print(fit);
+  }
+  print_summary(job, folder);
+  return exit_code_of(job.seam_report);
+}
+
+}  // namespace
+
+void add_fit(CLI::App& app, Invocation& invocation) {
+  auto* command = app.add_subcommand("fit", "closed curve through unordered seam points");
+  auto options = std::make_shared<Options>();
+  command->add_option("points", options->points, "CSV; the first three columns are x, y, z")
+      ->required();
+  command->add_option("--out", options->out, "folder for the results")->required();
+  command->callback([options, &invocation] {
+    invocation.run = [options](const Invocation& invoked) { return run(*options, invoked); };
+  });
+}
+
+}  // namespace dseam::program
