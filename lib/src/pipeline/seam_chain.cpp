@@ -12,7 +12,7 @@ namespace {
 
 using seam::Refusal;
 
-constexpr std::size_t kPointsPerCell = 4;  // Fewer on average, and the cells grow instead.
+constexpr std::size_t kPointsPerCell = 2;  // Fewer on average, and the cells grow instead.
 constexpr double kMinExtentMm = 3.0;       // A whole part smaller than this came in metres.
 constexpr double kToleranceCells = 0.25;   // How far a surface's cells may lie off it.
 constexpr double kToleranceNoises = 3.0;
@@ -25,6 +25,7 @@ bool is_valid(const SeamChain::Config& c) noexcept {
   return c.min_coverage >= 0.0 && c.min_coverage <= 1.0 && c.max_hole_rad >= 0.0 &&
          c.max_sigma_mm > 0.0 && c.point_spacing_mm > 0.0 && std::isfinite(c.point_spacing_mm) &&
          std::isfinite(c.start_angle_rad) && c.hand_eye_sigma_mm >= 0.0 &&
+         c.scanner_sigma_mm >= 0.0 && std::isfinite(c.scanner_sigma_mm) &&
          std::isfinite(c.hand_eye_sigma_mm);
 }
 
@@ -46,6 +47,23 @@ seam::RingHint hint_of(const SeamInput& in) noexcept {
   hint.has_viewpoint = count > 0.0;
   hint.viewpoint /= std::max(1.0, count);
   return hint;
+}
+
+// How far the fused surface may be displaced at `p` because the views' poses are not exact: about
+// half of the views see any one place.
+double pose_sigma_of(std::span<const splice::SplicedView> views,
+                     const Eigen::Vector3d& p) noexcept {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const splice::SplicedView& view : views) {
+    if (view.state == splice::ViewState::kUsed) {
+      Eigen::Matrix<double, 3, 6> move;
+      move << Eigen::Matrix3d::Identity(), -geometry::skew(p);
+      sum += (move * view.covariance * move.transpose()).trace() / 3.0;
+      count += 1.0;
+    }
+  }
+  return count > 0.0 ? std::sqrt(sum / count / std::max(1.0, 0.5 * count)) : 0.0;
 }
 
 Refusal too_few_surfaces(std::span<const seam::FoundSurface> surfaces) noexcept {
@@ -139,7 +157,11 @@ bool SeamChain::fit_joint(const SeamInput& in, const seam::Joint& joint,
 
 bool SeamChain::find_edge(const SeamInput& in, seam::SeamReport& report) noexcept {
   seam::EdgeCurve& edge = work_[0].edge;
-  edges_.run(in.frames, in.views, fit_, report.noise_mm);
+  if (in.frames.empty()) {
+    edges_.run(fit_, report.spacing_mm);
+  } else {
+    edges_.run(in.frames, in.views, fit_, report.noise_mm);
+  }
   report.joint.num_edge_intervals = static_cast<std::uint32_t>(edges_.intervals().size());
   const bool has_gap = edge.fit(edges_.intervals()) && seam::describe_gap(edge, report.joint);
   edge_ = has_gap ? &edge : nullptr;
@@ -150,11 +172,13 @@ bool SeamChain::find_edge(const SeamInput& in, seam::SeamReport& report) noexcep
   return has_reference;
 }
 
-void SeamChain::build_curve(const SeamInput& /*in*/, seam::SeamReport& report,
+void SeamChain::build_curve(const SeamInput& in, seam::SeamReport& report,
                             Buffer<seam::SeamPoint>& out) noexcept {
   Workspace& work = work_[0];
   work.coverage.run(fit_, edge_, report.spacing_mm);
-  const seam::ErrorSources errors{0.0, config_.hand_eye_sigma_mm};
+  const double pose_sigma_mm = pose_sigma_of(in.views, fit_.joint().nozzle.point);
+  const seam::ErrorSources errors{std::hypot(pose_sigma_mm, config_.scanner_sigma_mm),
+                                  config_.hand_eye_sigma_mm};
   const seam::CurveBuilder::Report built =
       work.builder.run({config_.reference, config_.point_spacing_mm, config_.start_angle_rad,
                         config_.counter_clockwise},

@@ -17,6 +17,9 @@ constexpr double kCellsPerArea =
     1.5;  // Cubes that a plane of random direction cuts, per cell area.
 constexpr int kMaxPasses = 5;
 constexpr double kMinPointsOfPlane = 6.0;
+constexpr double kOffPlaneCells = 0.35;
+constexpr double kThickCells = 0.15;
+constexpr double kOffPlaneNoises = 3.0;
 
 bool in_range(const Eigen::Vector3d& scaled) noexcept {
   return (scaled.array().abs() < kAxisLimit).all();  // False for NaN.
@@ -64,12 +67,12 @@ CellMap::Report CellMap::run(const cloud::FusedCloudView& in) noexcept {
   for (int pass = 0; pass < kMaxPasses; ++pass) {
     fill(in, report);
     if (report.full) {
-      report.cell_mm *= 2.0;
+      report.cell_mm *= 1.5;
       continue;
     }
     estimate_scales(report);
-    const double wanted = std::max({kSpacingsPerCell * report.spacing_mm,
-                                    kNoisesPerCell * report.noise_mm, 0.01 * report.extent_mm});
+    const double wanted =
+        std::max(kSpacingsPerCell * report.spacing_mm, kNoisesPerCell * report.noise_mm);
     if (report.num_points == 0 || std::abs(wanted - report.cell_mm) < 0.3 * report.cell_mm) {
       break;
     }
@@ -77,7 +80,7 @@ CellMap::Report CellMap::run(const cloud::FusedCloudView& in) noexcept {
       report.cell_mm = wanted;
     }
   }
-  estimate_normals();
+  estimate_normals(report);
   return report;
 }
 
@@ -165,25 +168,50 @@ void CellMap::estimate_scales(Report& report) noexcept {
   }
 }
 
-void CellMap::estimate_normals() noexcept {
+// A neighbour that lies off the cell's own plane belongs to another surface: the bore behind a
+// nozzle's wall. A cell that is thick itself holds two surfaces and has no normal.
+void CellMap::estimate_normals(const Report& report) noexcept {
+  const double off_limit = kOffPlaneCells * report.cell_mm + kOffPlaneNoises * report.noise_mm;
+  const double thick_limit = kThickCells * report.cell_mm + kOffPlaneNoises * report.noise_mm;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
+    const Moments& m = moments_[i];
     Cell& cell = cells_[i];
-    cell.count = static_cast<std::uint32_t>(moments_[i].n);
-    cell.mean = pivot_ + moments_[i].sum / moments_[i].n;
-    Moments around;
-    for (std::int32_t k = 0; k < 27; ++k) {
-      const Key key{keys_[i].x + k % 3 - 1, keys_[i].y + k / 3 % 3 - 1, keys_[i].z + k / 9 - 1};
-      const std::uint32_t found = slots_[find_slot(key)];
-      if (found != 0) {
-        around.n += moments_[found - 1].n;
-        around.sum += moments_[found - 1].sum;
-        around.square += moments_[found - 1].square;
+    cell.count = static_cast<std::uint32_t>(m.n);
+    cell.mean = pivot_ + m.sum / m.n;
+    cell.normal.setZero();
+    PlaneOfMoments own{Eigen::Vector3d::Zero(), 0.0};
+    if (m.n >= kMinPointsOfPlane) {
+      own = plane_of(m.n, m.sum, m.square);
+      if (own.normal.squaredNorm() == 0.0 || own.scatter_mm2 > thick_limit * thick_limit) {
+        continue;
       }
     }
-    cell.normal = around.n >= kMinPointsOfPlane
-                      ? plane_of(around.n, around.sum, around.square).normal
-                      : Eigen::Vector3d::Zero();
+    const Moments around = around_cell(i, own.normal, off_limit);
+    if (around.n >= kMinPointsOfPlane) {
+      cell.normal = plane_of(around.n, around.sum, around.square).normal;
+    }
   }
+}
+
+// The cell's own sums and those of its neighbours on the same plane; all, where it has no plane.
+CellMap::Moments CellMap::around_cell(std::size_t i, const Eigen::Vector3d& normal,
+                                      double off_limit_mm) const noexcept {
+  const Eigen::Vector3d mean = moments_[i].sum / moments_[i].n;
+  Moments around;
+  for (std::int32_t k = 0; k < 27; ++k) {
+    const Key key{keys_[i].x + k % 3 - 1, keys_[i].y + k / 3 % 3 - 1, keys_[i].z + k / 9 - 1};
+    const std::uint32_t found = slots_[find_slot(key)];
+    if (found == 0) {
+      continue;
+    }
+    const Moments& m = moments_[found - 1];
+    if (std::abs(normal.dot(m.sum / m.n - mean)) <= off_limit_mm) {
+      around.n += m.n;
+      around.sum += m.sum;
+      around.square += m.square;
+    }
+  }
+  return around;
 }
 
 }  // namespace dseam::seam

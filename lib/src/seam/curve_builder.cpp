@@ -157,7 +157,7 @@ SeamPoint CurveBuilder::point_at(double s_mm, const RingCoverage& coverage,
 // its own error.
 void CurveBuilder::estimate_errors(SeamPoint& point, double phi_rad,
                                    const ErrorSources& errors) const noexcept {
-  const double common = errors.pose_sigma_mm * errors.pose_sigma_mm;
+  const double common = errors.surface_sigma_mm * errors.surface_sigma_mm;
   const double hand_eye = errors.hand_eye_sigma_mm * errors.hand_eye_sigma_mm;
   const double shell = fit_->shell_variance(point.p_base) + common;
   const double nozzle = fit_->nozzle_variance(point.p_base) + common;

@@ -16,6 +16,11 @@ constexpr double kEqualShare = 0.80;       // Scores closer than this are equall
 constexpr double kRadiusTolerance = 0.15;  // Of the expected radius.
 constexpr double kMinJointCosine = 0.97;   // Surfaces nearer than 14 degrees do not make a joint.
 
+constexpr double kMaxWallMm = 20.0;  // Of a nozzle.
+constexpr double kMinWallMm = 1.5;
+constexpr double kOutside = 1.6;  // What an outside is preferred to a bore by.
+constexpr double kCoaxialCosine = 0.99;
+constexpr double kMaxOffAxisMm = 5.0;
 constexpr double kOtherSideCosine = -0.1;
 
 // What lies around a ring, bin by bin of the angle about the nozzle.
@@ -31,8 +36,9 @@ int bin_of(double phi_rad) noexcept {
   return std::clamp(bin, 0, RingFinder::kBins - 1);
 }
 
+// A cell without a normal holds a bit of both surfaces: at a joint that speaks for it.
 bool lies_along(const Eigen::Vector3d& normal, const Cell& cell) noexcept {
-  return std::abs(normal.dot(cell.normal)) > kSupportCosine;
+  return cell.normal.squaredNorm() == 0.0 || std::abs(normal.dot(cell.normal)) > kSupportCosine;
 }
 
 Support support_of(std::span<const Cell> cells, const Joint& joint, const NozzleFrame& frame,
@@ -62,6 +68,12 @@ Support support_of(std::span<const Cell> cells, const Joint& joint, const Nozzle
 bool contains(const RingHint& hint, const Eigen::Vector3d& p) noexcept {
   return !hint.has_region || ((p.array() >= hint.region_min.array()).all() &&
                               (p.array() <= hint.region_max.array()).all());
+}
+
+bool is_coaxial(const RingCandidate& a, const RingCandidate& b) noexcept {
+  const Eigen::Vector3d between = a.centre_base - b.centre_base;
+  return std::abs(a.axis_base.dot(b.axis_base)) > kCoaxialCosine &&
+         between.cross(b.axis_base).norm() < kMaxOffAxisMm;
 }
 
 RingFate fate_of(const RingCandidate& ring, int num_below, const RingHint& hint,
@@ -154,7 +166,7 @@ void RingFinder::keep(const RingCandidate& ring, const Joint& joint) noexcept {
   const double near_mm = 0.15 * ring.radius_mm;
   for (std::size_t i = 0; i < rings_.size(); ++i) {
     if ((rings_[i].centre_base - ring.centre_base).norm() < near_mm &&
-        std::abs(rings_[i].radius_mm - ring.radius_mm) < near_mm) {
+        std::abs(rings_[i].radius_mm - ring.radius_mm) < kMinWallMm) {
       if (ring.score_mm > rings_[i].score_mm) {
         rings_[i] = ring;
         joints_[i] = joint;
@@ -167,8 +179,22 @@ void RingFinder::keep(const RingCandidate& ring, const Joint& joint) noexcept {
   }
 }
 
+// Inside another ring about the same axis: the joint is on the nozzle's outside, not in its bore.
+bool RingFinder::is_bore(const RingCandidate& ring) const noexcept {
+  for (const RingCandidate& other : rings_.view()) {
+    const double wall = other.radius_mm - ring.radius_mm;
+    if (wall > kMinWallMm && wall < kMaxWallMm && is_coaxial(ring, other) &&
+        other.fate == RingFate::kOutscored && kOutside * other.score_mm > ring.score_mm) {
+      return true;
+    }
+  }
+  return false;
+}
+
 RingFinder::Choice RingFinder::choose(SeamReport& report) noexcept {
-  const auto eligible = [&](std::size_t i) { return rings_[i].fate == RingFate::kOutscored; };
+  const auto eligible = [&](std::size_t i) {
+    return rings_[i].fate == RingFate::kOutscored && !is_bore(rings_[i]);
+  };
   std::size_t best = rings_.size();
   bool elsewhere = false;
   for (std::size_t i = 0; i < rings_.size(); ++i) {

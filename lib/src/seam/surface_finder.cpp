@@ -14,9 +14,11 @@ constexpr double kSameCosine = 0.94;     // 20 degrees: the cell's normal agrees
 constexpr double kExplainCosine = 0.85;  // 32 degrees: near a crease normals are blurred.
 constexpr double kMinSupport = 20.0;
 constexpr double kMinShare = 0.002;  // Of all cells.
+constexpr double kFarReach = 4.0;    // From here on a sample of the cells is enough.
+constexpr std::size_t kMaxFarCells = 8000;
 constexpr double kGolden = 0.6180339887498949;
 // What a kind with more freedom must explain more.
-constexpr std::array<double, 4> kThrift = {1.0, 0.985, 0.98, 0.95};
+constexpr std::array<double, 4> kThrift = {1.0, 0.98, 0.97, 0.90};
 constexpr std::array<SurfaceKind, 4> kKinds = {SurfaceKind::kPlane, SurfaceKind::kSphere,
                                                SurfaceKind::kCylinder, SurfaceKind::kCone};
 
@@ -102,7 +104,8 @@ FoundSurface SurfaceFinder::grown(std::span<const Cell> cells, const Cell& seed,
   for (const double reach : kReach) {
     SurfaceEquations equations;
     const double limit = patch_mm * reach;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::size_t stride = reach < kFarReach ? 1 : 1 + cells.size() / kMaxFarCells;
+    for (std::size_t i = 0; i < cells.size(); i += stride) {
       if (explained_[i] || (cells[i].mean - seed.mean).squaredNorm() > limit * limit) {
         continue;
       }
@@ -111,7 +114,7 @@ FoundSurface SurfaceFinder::grown(std::span<const Cell> cells, const Cell& seed,
         equations.add(surface, cells[i].mean, fit);
       }
     }
-    support = equations.weight();
+    support = equations.weight() * static_cast<double>(stride);
     const std::optional<Surface> next = equations.solve(surface);
     if (!next) {
       return {};

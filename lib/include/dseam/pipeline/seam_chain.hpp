@@ -55,9 +55,10 @@ class SeamChain {
     double max_hole_rad = 1.0471975511965976;  ///< 60 degrees.
     double max_sigma_mm = 1.0;
     double point_spacing_mm = 0.5;
-    double start_angle_rad = 0.0;    ///< About the nozzle's axis, from base x laid into the ring.
-    bool counter_clockwise = true;   ///< Seen from the nozzle's free end.
-    double hand_eye_sigma_mm = 0.0;  ///< 0: not known; added to the predicted sigmas.
+    double start_angle_rad = 0.0;     ///< About the nozzle's axis, from base x laid into the ring.
+    bool counter_clockwise = true;    ///< Seen from the nozzle's free end.
+    double scanner_sigma_mm = 0.006;  ///< What its calibration leaves, the same in all views.
+    double hand_eye_sigma_mm = 0.0;   ///< 0: not known; added to the predicted sigmas.
   };
   struct Capacity {
     std::size_t max_points = 262144;

@@ -62,7 +62,9 @@ class CellMap {
   bool add(const Key& key, const Eigen::Vector3d& p, cloud::ViewMask seen_by) noexcept;
   std::uint32_t find_slot(const Key& key) const noexcept;
   void estimate_scales(Report& report) noexcept;
-  void estimate_normals() noexcept;
+  void estimate_normals(const Report& report) noexcept;
+  [[nodiscard]] Moments around_cell(std::size_t i, const Eigen::Vector3d& normal,
+                                    double off_limit_mm) const noexcept;
 
   Eigen::Vector3d pivot_ = Eigen::Vector3d::Zero();
   Buffer<Cell> cells_;

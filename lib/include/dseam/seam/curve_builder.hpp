@@ -15,7 +15,7 @@ namespace dseam::seam {
 
 /// What is known beyond the fit and enters the predicted errors.
 struct ErrorSources {
-  double pose_sigma_mm = 0.0;      ///< Of the views' poses against each other, at the seam.
+  double surface_sigma_mm = 0.0;   ///< Of both surfaces alike: scanner and views' poses.
   double hand_eye_sigma_mm = 0.0;  ///< 0: not known, left out.
 };
 

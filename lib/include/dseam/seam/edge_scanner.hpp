@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -28,15 +29,21 @@ class EdgeScanner {
   static constexpr std::size_t kMaxLine = 4096;  ///< Longer rows are cut off.
 
   [[nodiscard]] static constexpr std::size_t bytes(std::size_t max_intervals) noexcept {
-    return Arena::bytes<EdgeInterval>(max_intervals) + Arena::bytes<Pixel>(kMaxLine);
+    return Arena::bytes<EdgeInterval>(max_intervals) + Arena::bytes<Pixel>(kMaxLine) +
+           Arena::bytes<Nearest>(kBins);
   }
   EdgeScanner() = default;
   EdgeScanner(std::size_t max_intervals, Arena& arena) noexcept
-      : intervals_(arena.take<EdgeInterval>(max_intervals)), line_(arena.take<Pixel>(kMaxLine)) {}
+      : intervals_(arena.take<EdgeInterval>(max_intervals)),
+        line_(arena.take<Pixel>(kMaxLine)),
+        nearest_(arena.take<Nearest>(kBins)) {}
 
   /// `noise_mm` is that of a single pixel.
   void run(std::span<const depth::DepthImage> frames, std::span<const splice::SplicedView> views,
            const JointFit& fit, double noise_mm) noexcept;
+  /// The same from the fused points alone: where the shell's points thin out towards the nozzle
+  /// although the nozzle's own points go on. Less exact, by a share of the points' spacing.
+  void run(const JointFit& fit, double spacing_mm) noexcept;
   [[nodiscard]] std::span<const EdgeInterval> intervals() const noexcept {
     return intervals_.view();
   }
@@ -47,6 +54,13 @@ class EdgeScanner {
     Kind kind = Kind::kNothing;
     float z_mm = 0.0F;
   };
+  static constexpr std::size_t kBins = 120;
+  static constexpr std::size_t kNearest = 6;
+  // The shell's points nearest to the nozzle in one bin of the angle, and the nozzle's lowest.
+  struct Nearest {
+    std::array<double, kNearest> shell_mm{};
+    double nozzle_mm = 0.0;
+  };
   struct Window {
     std::uint32_t u0 = 0, v0 = 0, u1 = 0, v1 = 0;  // The last ones are excluded.
   };
@@ -55,6 +69,7 @@ class EdgeScanner {
     bool along_u;
   };
 
+  void collect_nearest(const JointFit& fit) noexcept;
   [[nodiscard]] Window window_of(const depth::Intrinsics& k) const noexcept;
   [[nodiscard]] Pixel classify(const depth::DepthImage& frame, std::uint32_t u,
                                std::uint32_t v) const noexcept;
@@ -72,6 +87,7 @@ class EdgeScanner {
   double margin_mm_ = 0.1;
   Buffer<EdgeInterval> intervals_;
   std::span<Pixel> line_;
+  std::span<Nearest> nearest_;
 };
 
 }  // namespace dseam::seam

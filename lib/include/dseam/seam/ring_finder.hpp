@@ -78,6 +78,7 @@ class RingFinder {
   void consider(std::span<const Cell> cells, const Joint& joint, double cell_mm,
                 double tolerance_mm, const RingHint& hint) noexcept;
   void keep(const RingCandidate& ring, const Joint& joint) noexcept;
+  [[nodiscard]] bool is_bore(const RingCandidate& ring) const noexcept;
   Choice choose(SeamReport& report) noexcept;
 
   Buffer<RingCandidate> rings_;

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "dseam/seam/edge_scanner.hpp"
+
+namespace dseam::seam {
+namespace {
+
+constexpr double kTurnRad = 2.0 * std::numbers::pi;
+constexpr double kNothing = 1e9;
+constexpr double kHalfWidthSpacings = 0.3;  // What one bin leaves open.
+// A voxel that the edge cuts still gives a point: the points end nearer to the nozzle than the
+// shell.
+constexpr double kCutVoxelSpacings = 0.4;
+constexpr double kLowestShare = 0.5;  // Of the gap: a dead band takes as much from the nozzle.
+constexpr double kMinGapSpacings = 0.85;
+
+}  // namespace
+
+void EdgeScanner::collect_nearest(const JointFit& fit) noexcept {
+  const auto bin_of = [](double phi_rad) {
+    const double turn = phi_rad / kTurnRad;
+    const double place = (turn - std::floor(turn)) * double{kBins};
+    return std::min(static_cast<std::size_t>(std::max(0.0, place)), kBins - 1);
+  };
+  for (Nearest& bin : nearest_) {
+    bin.shell_mm.fill(kNothing);
+    bin.nozzle_mm = kNothing;
+  }
+  for (const NearPoint& q : fit.shell().points.view()) {
+    auto& shell = nearest_[bin_of(q.phi_rad)].shell_mm;
+    if (q.trusted && q.away_mm < shell.back()) {
+      shell.back() = q.away_mm;
+      for (std::size_t k = kNearest - 1; k > 0 && shell[k] < shell[k - 1]; --k) {
+        std::swap(shell[k], shell[k - 1]);
+      }
+    }
+  }
+  for (const NearPoint& q : fit.nozzle().points.view()) {
+    double& lowest = nearest_[bin_of(q.phi_rad)].nozzle_mm;
+    lowest = q.trusted ? std::min(lowest, q.away_mm) : lowest;
+  }
+}
+
+void EdgeScanner::run(const JointFit& fit, double spacing_mm) noexcept {
+  intervals_.clear();
+  collect_nearest(fit);
+  // Of points so dense, the k-th nearest to an edge lies k of these steps from it on average.
+  const double arc_mm = kTurnRad * fit.joint().nozzle.radius_mm / double{kBins};
+  const double step_mm = spacing_mm * spacing_mm / arc_mm;
+  const double half_mm = kHalfWidthSpacings * spacing_mm;
+  for (std::size_t i = 0; i < kBins; ++i) {
+    const Nearest& bin = nearest_[i];
+    double edge_mm = kCutVoxelSpacings * spacing_mm;
+    for (std::size_t k = 0; k < kNearest; ++k) {
+      edge_mm += (bin.shell_mm[k] - static_cast<double>(k + 1) * step_mm) / double{kNearest};
+    }
+    const bool gap = edge_mm < kNothing / double{kNearest} &&
+                     edge_mm > kMinGapSpacings * spacing_mm &&
+                     bin.nozzle_mm < kLowestShare * edge_mm + 0.5 * spacing_mm;
+    if (gap) {
+      const double phi = kTurnRad * (static_cast<double>(i) + 0.5) / double{kBins};
+      (void)intervals_.append({phi, edge_mm - half_mm, edge_mm + half_mm});
+    }
+  }
+}
+
+}  // namespace dseam::seam
