@@ -134,7 +134,8 @@ double Adjustment::step(double gate_mm) noexcept {
   const SurfaceTieConfig ties{gate_mm, config.start_gate_mm, 1.0 / variance};
   report.num_surface_ties =
       add_surface_ties(views, pivot, report.bowl_mm, ties, bowl_at(), system, surface);
-  add_marker_ties(views, sights, pivot, report.bowl_mm, bowl_at(), system, markers);
+  add_marker_ties(views, sights, pivot, report.bowl_mm, marker_variance_factor, bowl_at(), system,
+                  markers);
   add_reports();
   if (!system.factorise()) {
     report.state = NetworkState::kSingular;
@@ -153,12 +154,22 @@ double Adjustment::step(double gate_mm) noexcept {
   return largest;
 }
 
+// What the sights say of their own errors counts for more than what was predicted of them.
+void Adjustment::settle_marker_variance() noexcept {
+  constexpr double kMinFreedom = 12.0;
+  if (markers.freedom >= kMinFreedom) {
+    const double found = marker_variance_factor * markers.chi_squared / markers.freedom;
+    marker_variance_factor = std::clamp(found, 0.25, 1e4);
+  }
+}
+
 void Adjustment::adjust() noexcept {
   constexpr double kSettledMm = 2e-4;
   double gate = config.start_gate_mm;
   report.state = NetworkState::kNotConverged;
   sigma_mm = kPatchSigmaMm;
   ties_per_independent = kTiesPerIndependent;
+  marker_variance_factor = 1.0;
   for (report.iterations = 1; report.iterations <= config.max_iterations; ++report.iterations) {
     const double largest = step(gate);
     if (report.state == NetworkState::kSingular) {
@@ -169,6 +180,7 @@ void Adjustment::adjust() noexcept {
     if (at_last_gate) {
       sigma_mm = std::max(kSmallestSigmaMm, surface.sigma_mm());
       ties_per_independent = surface.ties_per_independent();
+      settle_marker_variance();
     }
     if (at_last_gate && largest < kSettledMm) {
       report.state = NetworkState::kAdjusted;

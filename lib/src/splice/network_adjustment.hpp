@@ -25,6 +25,7 @@ struct Adjustment {
   MarkerStatistics markers{};
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();
   double sigma_mm = 0.0;
+  double marker_variance_factor = 1.0;
   double ties_per_independent = 1.0;
 
   [[nodiscard]] std::size_t bowl_at() const noexcept { return 6 * inputs.size(); }
@@ -37,10 +38,12 @@ struct Adjustment {
   void choose_pivot() noexcept;
   void vote_on_base() noexcept;
   void adjust() noexcept;
+  void settle_marker_variance() noexcept;
   double step(double gate_mm) noexcept;
   void add_reports() noexcept;
   bool leave_out_worst() noexcept;
   void leave_out_unlinked() noexcept;
+  [[nodiscard]] geometry::Vector6 offset_effect(std::size_t v) const noexcept;
   void fill_covariances() noexcept;
   void fill_views() noexcept;
 };

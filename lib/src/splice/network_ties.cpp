@@ -72,8 +72,9 @@ struct Landmark {
   }
 };
 
-void add_landmark(const Landmark& landmark, const Eigen::Vector3d& pivot, std::size_t bowl_at,
-                  BlockSystem& system) noexcept {
+// Not inlined: its blocks and the landmark would share one large stack frame.
+[[gnu::noinline]] void add_landmark(const Landmark& landmark, const Eigen::Vector3d& pivot,
+                                    std::size_t bowl_at, BlockSystem& system) noexcept {
   const Eigen::Matrix3d inverse_sum = landmark.sum.inverse();
   for (std::size_t m = 0; m < landmark.count; ++m) {
     const Sight& a = landmark.sights[m];
@@ -97,13 +98,16 @@ void add_landmark(const Landmark& landmark, const Eigen::Vector3d& pivot, std::s
 
 void note(const Landmark& landmark, MarkerStatistics& statistics) noexcept {
   ++statistics.landmarks;
+  statistics.freedom += 3.0 * static_cast<double>(landmark.count - 1);
   cloud::ViewMask seen = 0;
   for (std::size_t i = 0; i < landmark.count; ++i) {
     seen = static_cast<cloud::ViewMask>(seen | (1U << landmark.sights[i].view));
   }
   for (std::size_t i = 0; i < landmark.count; ++i) {
     const std::size_t v = landmark.sights[i].view;
-    statistics.squares[v] += (landmark.sights[i].q - landmark.place).squaredNorm();
+    const Eigen::Vector3d d = landmark.sights[i].q - landmark.place;
+    statistics.chi_squared += d.dot(landmark.sights[i].weight * d);
+    statistics.squares[v] += d.squaredNorm();
     ++statistics.count[v];
     statistics.linked[v] = static_cast<cloud::ViewMask>(statistics.linked[v] | seen);
   }
@@ -113,7 +117,7 @@ void note(const Landmark& landmark, MarkerStatistics& statistics) noexcept {
 
 void add_marker_ties(std::span<const PosedView> views, std::span<const MarkerSight> sights,
                      const Eigen::Vector3d& pivot, const Eigen::Vector2d& bowl_mm,
-                     std::size_t bowl_at, BlockSystem& system,
+                     double variance_factor, std::size_t bowl_at, BlockSystem& system,
                      MarkerStatistics& statistics) noexcept {
   std::size_t i = 0;
   while (i < sights.size()) {
@@ -123,7 +127,8 @@ void add_marker_ties(std::span<const PosedView> views, std::span<const MarkerSig
       const MarkerSight& s = sights[i];
       if (s.view < views.size() && views[s.view].used && landmark.count < cloud::kMaxViews &&
           s.p_camera.z() > 0.0) {
-        landmark.sights[landmark.count++] = placed_sight(views[s.view], s, bowl_mm);
+        landmark.sights[landmark.count] = placed_sight(views[s.view], s, bowl_mm);
+        landmark.sights[landmark.count++].weight /= variance_factor;
       }
     }
     if (landmark.count >= 2) {

@@ -16,12 +16,15 @@ struct MarkerStatistics {
   std::array<cloud::ViewMask, cloud::kMaxViews> linked{};
   std::uint32_t landmarks = 0;
   std::uint32_t rejected = 0;
+  double chi_squared = 0.0;  ///< Of all sights about their landmarks,
+  double freedom = 0.0;      ///< and how large that should be.
 };
 
-/// Adds the markers, each landmark's place being eliminated on the spot.
+/// Adds the markers, each landmark's place being eliminated on the spot. `variance_factor` scales
+/// the sights' covariances.
 void add_marker_ties(std::span<const PosedView> views, std::span<const MarkerSight> sights,
                      const Eigen::Vector3d& pivot, const Eigen::Vector2d& bowl_mm,
-                     std::size_t bowl_at, BlockSystem& system,
+                     double variance_factor, std::size_t bowl_at, BlockSystem& system,
                      MarkerStatistics& statistics) noexcept;
 
 /// A pose's difference to the reported one: position in mm, then rotation, and its chi-squared.

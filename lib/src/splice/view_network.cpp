@@ -26,6 +26,14 @@ Matrix6 block_of(const BlockSystem& system, std::size_t row, std::size_t column)
 
 }  // namespace
 
+// An error that all depths have in common moves every view along its own axis, and nothing in the
+// views can tell: poses take it up. What all views share of it belongs to the base.
+Vector6 Adjustment::offset_effect(std::size_t v) const noexcept {
+  Vector6 effect = Vector6::Zero();
+  effect.head<3>() = config.offset_sigma_mm * views[v].T_base_camera.rotation.col(2);
+  return effect;
+}
+
 void Adjustment::fill_covariances() noexcept {
   system.invert();
   const double n = static_cast<double>(num_used());
@@ -37,7 +45,12 @@ void Adjustment::fill_covariances() noexcept {
       mean += views[w].used ? Matrix6(block_of(system, 6 * v, 6 * w) / (n * n)) : Matrix6::Zero();
     }
   }
-  report.base_covariance = to_origin * mean * to_origin.transpose();
+  Vector6 mean_offset = Vector6::Zero();
+  for (std::size_t v = 0; v < inputs.size(); ++v) {
+    mean_offset += views[v].used ? Vector6(offset_effect(v) / n) : Vector6::Zero();
+  }
+  report.base_covariance =
+      to_origin * (mean + mean_offset * mean_offset.transpose()) * to_origin.transpose();
   for (std::size_t v = 0; v < inputs.size(); ++v) {
     if (!views[v].used) {
       continue;
@@ -46,8 +59,9 @@ void Adjustment::fill_covariances() noexcept {
     for (std::size_t w = 0; w < inputs.size(); ++w) {
       with_mean += views[w].used ? Matrix6(block_of(system, 6 * v, 6 * w) / n) : Matrix6::Zero();
     }
-    const Matrix6 relative =
-        block_of(system, 6 * v, 6 * v) - with_mean - with_mean.transpose() + mean;
+    const Vector6 offset = offset_effect(v) - mean_offset;
+    const Matrix6 relative = block_of(system, 6 * v, 6 * v) - with_mean - with_mean.transpose() +
+                             mean + offset * offset.transpose();
     constexpr double kReachMm = 100.0;
     Vector6 scale;
     scale << 1.0, 1.0, 1.0, kReachMm, kReachMm, kReachMm;

@@ -76,11 +76,12 @@ class ViewNetwork {
   struct Config {
     double reported_sigma_mm = 1.0;  ///< Of each axis of a reported camera position.
     double reported_sigma_rad = 0.0052359877559829881;  ///< 0.3 degree.
-    double bowl_sigma_mm = 0.02;  ///< What is known of the depth bowl beforehand.
-    double start_gate_mm = 8.0;   ///< How far apart surfaces may be at first,
-    double final_gate_mm = 0.25;  ///< and at last, unless the surface is noisier.
-    double min_share_near = 0.5;  ///< Of a view's ties that must hold; fewer contradict.
-    double max_sigma_mm = 0.5;    ///< Of a view at 100 mm; more is kUnobservable.
+    double bowl_sigma_mm = 0.01;    ///< Of the depth bowl at the image sides, beforehand.
+    double offset_sigma_mm = 0.01;  ///< Of an error that all depths have in common.
+    double start_gate_mm = 8.0;     ///< How far apart surfaces may be at first,
+    double final_gate_mm = 0.25;    ///< and at last, unless the surface is noisier.
+    double min_share_near = 0.5;    ///< Of a view's ties that must hold; fewer contradict.
+    double max_sigma_mm = 0.5;      ///< Of a view at 100 mm; more is kUnobservable.
     std::uint32_t max_iterations = 25;
   };
 
