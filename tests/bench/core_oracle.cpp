@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// PCL as a second oracle: how far the answers of the core agree with it, stage
+// by stage.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <set>
+
+#include "core_chain.hpp"
+#include "part_cloud.hpp"
+#include "pcl_peer.hpp"
+
+namespace dseam::bench {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+/// Both run over the same cells, so that each stage is compared by itself.
+void compare(const char *name, const test::OwnedCloud &cloud, float cell_mm,
+             float radius_mm) {
+  CoreChain core(cloud, cell_mm, radius_mm);
+  core.crop();
+  core.clean();
+  PclPeer pcl(cloud.x, cloud.y, cloud.z);
+  pcl.passthrough(kLowZ, kHighZ);
+  pcl.use_cropped();
+  pcl.remove_outliers(5, 1.0);
+  const std::vector<int> theirs = pcl.kept();
+  const std::set<int> their_set(theirs.begin(), theirs.end());
+  std::size_t both = 0;
+  for (const std::uint32_t i : core.kept.view()) {
+    both += their_set.count(static_cast<int>(i));
+  }
+  const std::size_t kept_by_one = theirs.size() + core.kept.size() - 2 * both;
+  const double alike = 1.0 - static_cast<double>(kept_by_one) /
+                                 static_cast<double>(core.cropped.size());
+  std::printf("%s: outliers kept alike %.4f %% (%zu, %zu)\n", name,
+              100.0 * alike, core.kept.size(), theirs.size());
+
+  // From here on both get the core's cells.
+  PclPeer cells(core.cleaned.view().x, core.cleaned.view().y,
+                core.cleaned.view().z);
+  cells.downsample(cell_mm);
+  std::vector<std::array<float, 3>> a;
+  std::vector<std::array<float, 3>> b;
+  const std::vector<float> xyz = cells.cells_xyz();
+  for (std::size_t i = 0; i < core.cells.size(); ++i) {
+    a.push_back({core.cells[i].x, core.cells[i].y, core.cells[i].z});
+  }
+  for (std::size_t i = 0; i < xyz.size(); i += 3) {
+    b.push_back({xyz[i], xyz[i + 1], xyz[i + 2]});
+  }
+  const auto by_cell = [cell_mm](const auto &p, const auto &q) {
+    for (const std::size_t axis : {2U, 1U, 0U}) {
+      const float pc = std::floor(p[axis] / cell_mm);
+      const float qc = std::floor(q[axis] / cell_mm);
+      if (pc != qc) {
+        return pc < qc;
+      }
+    }
+    return p < q;
+  };
+  std::sort(a.begin(), a.end(), by_cell);
+  std::sort(b.begin(), b.end(), by_cell);
+  float worst = a.size() == b.size() ? 0.0F : INFINITY;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    for (const std::size_t axis : {0U, 1U, 2U}) {
+      worst = std::max(worst, std::fabs(a[i][axis] - b[i][axis]));
+    }
+  }
+  std::printf("%s: cells %zu and %zu, centroids differ by at most %.6f mm\n",
+              name, a.size(), b.size(), static_cast<double>(worst));
+
+  const cloud::CloudView view = core.cells.view();
+  PclPeer peer(view.x, view.y, view.z);
+  peer.estimate_normals(radius_mm);
+  peer.find_boundary(radius_mm, kGapRad);
+  const std::vector<float> normals = peer.normals_xyz();
+  const std::vector<std::uint8_t> flags = peer.boundary();
+  double worst_deg = 0.0;
+  std::size_t good = 0;
+  std::size_t off = 0;
+  std::size_t flags_alike = 0;
+  for (std::size_t i = 0; i < core.cells.size(); ++i) {
+    const bool open = core.boundary_buffer.gap_rad[i] > kGapRad;
+    if (core.normal_buffer.state[i] == cloud::NormalState::kGood) {
+      ++good;
+      flags_alike += open == (flags[i] != 0) ? 1U : 0U;
+      const geometry::Vec3f theirs_n{normals[3 * i], normals[3 * i + 1],
+                                     normals[3 * i + 2]};
+      const geometry::Vec3f turned =
+          geometry::cross(core.normal_buffer[i], theirs_n);
+      const double deg =
+          std::asin(std::min(1.0F, geometry::norm(turned))) * kDegPerRad;
+      worst_deg = std::max(worst_deg, deg);
+      off += deg > 0.01 ? 1U : 0U;
+    }
+  }
+  std::printf("%s: %zu normals, %zu over 0.01 degree (worst %.4f); boundary "
+              "flags alike %.4f %%\n",
+              name, good, off, worst_deg,
+              100.0 * static_cast<double>(flags_alike) /
+                  static_cast<double>(good));
+}
+
+} // namespace
+} // namespace dseam::bench
+
+int main() {
+  using namespace dseam;
+  bench::compare("part, 120,887 points, 3 mm", bench::part_cloud(120887), 3.0F,
+                 7.5F);
+  bench::compare("part, 120,887 points, 1 mm", bench::part_cloud(120887), 1.0F,
+                 2.5F);
+  bench::compare("part, 1,000,000 points, 1 mm", bench::part_cloud(1000000),
+                 1.0F, 2.5F);
+  return 0;
+}
