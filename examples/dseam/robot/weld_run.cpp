@@ -76,7 +76,8 @@ bool WeldRun::start(trajectory::SetPointView points) {
 }
 
 bool WeldRun::follow(std::size_t total, const Progress& progress) {
-  for (std::size_t cycles = 0; sender_.state() != link::HostState::kDone; ++cycles) {
+  // The session stops the link by itself after the last point, and is idle once the robot stands.
+  for (std::size_t cycles = 0; session_.state() != rt::SessionState::kIdle; ++cycles) {
     if (stopped()) {
       return false;
     }

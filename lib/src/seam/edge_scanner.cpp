@@ -3,7 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace dseam::seam {
@@ -17,6 +19,7 @@ constexpr double kMarginNoises = 4.0;
 constexpr double kShellShare = 0.6;  // Of the margin: between the two a pixel tells nothing.
 constexpr std::size_t kMaxApart = 6;
 constexpr std::uint32_t kStride = 2;
+constexpr std::uint32_t kNoiseStride = 8;
 
 Eigen::Vector3d ray_of(const depth::Intrinsics& k, double u, double v) noexcept {
   return {(u - k.cx) / k.fx, (v - k.cy) / k.fy, 1.0};
@@ -28,7 +31,7 @@ void EdgeScanner::run(std::span<const depth::DepthImage> frames,
                       std::span<const splice::SplicedView> views, const JointFit& fit,
                       double noise_mm) noexcept {
   fit_ = &fit;
-  margin_mm_ = kMarginMm + kMarginNoises * noise_mm;
+  margin_mm_ = kMarginMm + kMarginNoises * std::max(noise_mm, pixel_noise_mm(frames, views));
   intervals_.clear();
   for (std::size_t i = 0; i < std::min(frames.size(), views.size()); ++i) {
     if (views[i].state != splice::ViewState::kUsed) {
@@ -43,6 +46,48 @@ void EdgeScanner::run(std::span<const depth::DepthImage> frames,
       scan_line(frames[i], {u, w.v0, false}, std::min<std::size_t>(w.v1 - w.v0, kMaxLine));
     }
   }
+}
+
+// A fused point is the mean of several pixels; a single one scatters more, and it is single pixels
+// that are told apart here. The median is the shell's even where a gap is seen.
+double EdgeScanner::pixel_noise_mm(std::span<const depth::DepthImage> frames,
+                                   std::span<const splice::SplicedView> views) noexcept {
+  constexpr double kBinMm = 0.01;
+  constexpr double kSigmaOfMedian = 1.4826;
+  std::array<std::uint32_t, 128> histogram{};
+  std::uint32_t total = 0;
+  for (std::size_t i = 0; i < std::min(frames.size(), views.size()); ++i) {
+    if (views[i].state != splice::ViewState::kUsed) {
+      continue;
+    }
+    T_base_camera_ = views[i].T_base_camera;
+    const Window w = window_of(frames[i].intrinsics);
+    for (std::uint32_t v = w.v0; v < w.v1; v += kNoiseStride) {
+      for (std::uint32_t u = w.u0; u < w.u1; u += kNoiseStride) {
+        const double off_mm = off_shell_mm(frames[i], u, v);
+        const auto bin = static_cast<std::size_t>(std::min(off_mm / kBinMm, 127.0));
+        histogram[bin] += off_mm < 128.0 * kBinMm ? 1U : 0U;
+        total += off_mm < 128.0 * kBinMm ? 1U : 0U;
+      }
+    }
+  }
+  std::uint32_t below = 0;
+  std::size_t median = 0;
+  while (median < histogram.size() && (below += histogram[median]) < (total + 1) / 2) {
+    ++median;
+  }
+  return kSigmaOfMedian * kBinMm * static_cast<double>(median);
+}
+
+// How far a pixel of the shell beside the joint lies from the fit; infinite for all others.
+double EdgeScanner::off_shell_mm(const depth::DepthImage& frame, std::uint32_t u,
+                                 std::uint32_t v) const noexcept {
+  const double z = frame.count_at(u, v) * frame.mm_per_count;
+  const Eigen::Vector3d p = T_base_camera_ * (z * ray_of(frame.intrinsics, u, v));
+  const double outside = signed_distance(fit_->joint().nozzle, p);
+  const bool beside = z > 0.0 && outside > 0.5 * kReachMm && outside < 2.0 * kReachMm &&
+                      std::abs(shell_distance(fit_->joint(), p)) < 2.0;
+  return beside ? std::abs(fit_->above_shell(p)) : std::numeric_limits<double>::infinity();
 }
 
 // The part of the image in which the joint and the shell around it lie.

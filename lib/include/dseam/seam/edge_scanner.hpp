@@ -38,7 +38,7 @@ class EdgeScanner {
         line_(arena.take<Pixel>(kMaxLine)),
         nearest_(arena.take<Nearest>(kBins)) {}
 
-  /// `noise_mm` is that of a single pixel.
+  /// `noise_mm` is that of the fused points; a single pixel's is measured here.
   void run(std::span<const depth::DepthImage> frames, std::span<const splice::SplicedView> views,
            const JointFit& fit, double noise_mm) noexcept;
   /// The same from the fused points alone: where the shell's points thin out towards the nozzle
@@ -69,6 +69,10 @@ class EdgeScanner {
     bool along_u;
   };
 
+  [[nodiscard]] double pixel_noise_mm(std::span<const depth::DepthImage> frames,
+                                      std::span<const splice::SplicedView> views) noexcept;
+  [[nodiscard]] double off_shell_mm(const depth::DepthImage& frame, std::uint32_t u,
+                                    std::uint32_t v) const noexcept;
   void collect_nearest(const JointFit& fit) noexcept;
   [[nodiscard]] Window window_of(const depth::Intrinsics& k) const noexcept;
   [[nodiscard]] Pixel classify(const depth::DepthImage& frame, std::uint32_t u,
