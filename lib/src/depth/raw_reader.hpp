@@ -53,7 +53,7 @@ class RawReader {
     if (layout_.is_float()) {
       float value = 0.0F;
       std::memcpy(&value, place, sizeof value);
-      return value;
+      return static_cast<double>(value);
     }
     // Little endian by definition, whatever this processor is.
     return static_cast<double>(std::to_integer<std::uint32_t>(place[0]) |

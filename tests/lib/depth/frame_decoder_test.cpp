@@ -20,7 +20,8 @@ using test::Decoded;
 using test::RawFrameBuilder;
 using Fault = FrameDecoder::Fault;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 DepthModel projected() {
   return {.intrinsics = {.width = 4, .height = 3, .fx = 5.0, .fy = 5.0, .cx = 1.5, .cy = 1.0},
@@ -74,7 +75,7 @@ TEST(FrameDecoder, a_device_in_metres_gives_millimetres) {
   model.scale[2] = 1.0;
   model.mm_per_unit = 1000.0;
   RawFrameBuilder raw(model);
-  raw.fill({kNan}).set(1, 1, {0.4375F});
+  raw.fill({kNan}).set(1, 1, {0.4375});
 
   const Decoded out = decode(model, raw.bytes());
 
@@ -225,7 +226,7 @@ TEST(FrameDecoder, depths_beyond_16_bits_behind_the_camera_or_infinite_are_count
   model.format = SampleFormat::kC32f;
   model.scale[2] = 1.0;
   RawFrameBuilder raw(model);
-  raw.fill({kNan}).set(0, 0, {-5}).set(1, 0, {1e30F}).set(2, 0, {INFINITY}).set(3, 0, {-INFINITY});
+  raw.fill({kNan}).set(0, 0, {-5}).set(1, 0, {1e30}).set(2, 0, {kInfinity}).set(3, 0, {-kInfinity});
 
   const Decoded out = decode(model, raw.bytes());
 
