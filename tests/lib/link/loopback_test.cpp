@@ -1,94 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Host and robot joined frame by frame, in virtual time.
+#include "lib/link/loopback.hpp"
+
 #include <gtest/gtest.h>
 
-#include <vector>
+#include <limits>
 
-#include "dseam/link/receiver.hpp"
-#include "dseam/link/sender.hpp"
 #include "support/allocation_counter.hpp"
-#include "support/arena_owner.hpp"
 
 namespace dseam::link {
 namespace {
 
-constexpr std::int64_t kStepNs = 1'000'000;
-
-std::vector<trajectory::SetPoint> straight_weld(std::size_t count, std::uint32_t period_us) {
-  std::vector<trajectory::SetPoint> points(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    points[i].t_us = static_cast<std::uint32_t>(i) * period_us;
-    points[i].pose.p_base = {0.05 * static_cast<double>(i), 1.0, 2.0};
-    points[i].speed_mm_s = 5.0;
-    points[i].segment = torch::Segment::kWeld;
-    points[i].arc = i > 10 && i + 10 < count;
-  }
-  return points;
-}
-
-/// Both ends and a cable that may be cut in either direction.
-class Loopback : public ::testing::TestWithParam<bool> {
+class Loopback : public LoopbackCell, public ::testing::TestWithParam<bool> {
  protected:
   void SetUp() override {
     host_config_.addressing.classic = GetParam();
     robot_config_.addressing.classic = GetParam();
     rebuild();
   }
-
-  void rebuild() {
-    host_ = Sender::make(host_config_).value();
-    robot_ = Receiver::make(robot_config_, 256, arena_.arena()).value();
-    executed_.reserve(10'000);
-  }
-
-  void step() {
-    now_ns_ += kStepNs;
-    frames_.clear();
-    host_.poll(now_ns_, frames_);
-    for (const Frame& frame : frames_.view()) {
-      if (host_to_robot_) robot_.on_frame(frame, now_ns_);
-    }
-    frames_.clear();
-    robot_.poll(now_ns_, frames_);
-    for (DuePoint due; robot_.take_due(due);) {
-      executed_.push_back(due);
-    }
-    for (const Frame& frame : frames_.view()) {
-      if (robot_to_host_) host_.on_frame(frame, now_ns_);
-    }
-  }
-
-  bool run_until(HostState state, int most_steps = 5000) {
-    for (int i = 0; i < most_steps && host_.state() != state; ++i) {
-      step();
-    }
-    return host_.state() == state;
-  }
-
-  /// As far as kReady with `points` loaded.
-  bool prepare(trajectory::SetPointView points, std::uint32_t session = 77) {
-    return host_.connect(session, now_ns_).ok() && run_until(HostState::kIdle) &&
-           host_.arm(now_ns_).ok() && run_until(HostState::kArmed) &&
-           host_.load(points, 1, now_ns_).ok() && run_until(HostState::kReady);
-  }
-
-  bool prepare_and_start(trajectory::SetPointView points) {
-    if (!prepare(points)) return false;
-    host_.permit_weld(true);
-    return host_.start(now_ns_).ok() && run_until(HostState::kRunning);
-  }
-
-  test::ArenaOwner arena_{1 << 20};
-  std::vector<Frame> storage_ = std::vector<Frame>(128);
-  Buffer<Frame> frames_{storage_};
-  Sender::Config host_config_;
-  Receiver::Config robot_config_;
-  Sender host_ = Sender::make({}).value();
-  Receiver robot_ = Receiver::make({}, 256, arena_.arena()).value();
-  std::vector<DuePoint> executed_;
-  std::int64_t now_ns_ = 1'000'000'000;
-  bool host_to_robot_ = true;
-  bool robot_to_host_ = true;
 };
 
 INSTANTIATE_TEST_SUITE_P(Bus, Loopback, ::testing::Values(false, true),
@@ -202,17 +131,23 @@ TEST_P(Loopback, hold_stops_on_the_path_and_the_arc_waits_for_a_new_permit) {
   ASSERT_TRUE(host_.hold(now_ns_).ok());
   step();
   EXPECT_FALSE(robot_.arc_on());
-  for (int i = 0; i < 400; ++i) step();
+  for (int i = 0; i < 400; ++i) {
+    step();
+  }
   EXPECT_FALSE(robot_.moving());
   EXPECT_EQ(robot_.state(), RobotState::kHold);
   ASSERT_TRUE(host_.start(now_ns_).ok());
-  for (int i = 0; i < 300; ++i) step();
+  for (int i = 0; i < 300; ++i) {
+    step();
+  }
   EXPECT_TRUE(robot_.moving());
   EXPECT_FALSE(robot_.arc_on());
   host_.permit_weld(false);
   step();
   host_.permit_weld(true);
-  for (int i = 0; i < 10; ++i) step();
+  for (int i = 0; i < 10; ++i) {
+    step();
+  }
 
   EXPECT_TRUE(robot_.arc_on());
 }
