@@ -93,8 +93,8 @@ void add_budget(const Settings& settings, JobReport& job) {
   }
   job.budget.push_back({"scan and fit", job.seam_report.quality.mean_sigma_lateral_mm,
                         "mean predicted sigma across the seam, poses given"});
-  job.budget.push_back({"base frame", splice_sigma_mm(job.views, centre),
-                        "covariance of the adjusted poses at the seam, robot's reports included"});
+  job.budget.push_back({"splice", splice_sigma_mm(job.views, centre),
+                        "covariance of the adjusted poses at the seam"});
   if (settings.seam.hand_eye_sigma_mm > 0.0) {
     job.budget.push_back(
         {"hand-eye", settings.seam.hand_eye_sigma_mm, "expected error of the calibration"});
