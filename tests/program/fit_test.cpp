@@ -33,8 +33,8 @@ TEST(Fit, the_papers_points_become_one_closed_curve) {
   EXPECT_GE(counts["R-squared x"], 0.9997);
   EXPECT_GE(counts["R-squared y"], 0.9997);
   EXPECT_GE(counts["R-squared z"], 0.9997);
-  // Sorted angles of the 546 points about the fitted axis, computed apart. The data's README says
-  // 6.3 degrees, which these points do not give about any axis that was tried.
+  // Sorted angles of the 546 points about the fitted axis, computed apart from the program; the
+  // 6.3 degrees of the data's README could not be reproduced.
   EXPECT_NEAR(counts["largest hole degrees"], 3.36, 0.1);
 }
 

@@ -23,7 +23,7 @@ std::string tile(const std::string& value, const std::string& meaning) {
 
 std::string verdict(const JobReport& job) {
   return "<div class=\"verdict" + std::string(job.weld ? " good" : "") + "\"><b>" +
-         (job.weld ? "Weld" : "Refused") + "</b>" + escaped(job.reason) + "</div>\n" +
+         (job.weld ? "Accepted" : "Refused") + "</b>" + escaped(job.reason) + "</div>\n" +
          warnings_list(job.warnings);
 }
 
