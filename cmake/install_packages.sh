@@ -5,18 +5,19 @@
 set -euo pipefail
 
 declare -A packages=(
-  # make demo, make test
-  [quick]="cmake g++ ninja-build pkg-config libeigen3-dev libgtest-dev libcli11-dev
-           libtomlplusplus-dev nlohmann-json3-dev libspng-dev libboost-dev"
+  # make demo, make test. spin checks the models, tshark and the python packages the dictionary.
+  [quick]="binutils cmake g++ ninja-build pkg-config libeigen3-dev libgtest-dev libcli11-dev
+           libtomlplusplus-dev nlohmann-json3-dev libspng-dev libpng-dev libboost-dev
+           libaravis-dev libusb-1.0-0-dev spin python3 python3-canmatrix python3-can tshark"
   # make check: the second compiler, format and lint
   [check]="clang-14 clang-format-14 clang-tidy-14"
   # make cross: aarch64 under an emulator, bare-metal Cortex-M7
   [cross]="g++-aarch64-linux-gnu qemu-user googletest gcc-arm-none-eabi libnewlib-arm-none-eabi
            libstdc++-arm-none-eabi-dev qemu-system-arm"
   # make bench, make paper-tables, make check-long: the peers
-  [bench]="libpcl-dev libopencv-dev libnanoflann-dev libbenchmark-dev valgrind"
+  [bench]="libpcl-dev libopencv-dev libnanoflann-dev libbenchmark-dev valgrind gcovr"
   # make test-vm: a guest with real kernel drivers
-  [vm]="qemu-system-x86 busybox-static can-utils v4l-utils rt-tests kmod"
+  [vm]="qemu-system-x86 busybox-static iproute2 can-utils v4l-utils rt-tests kmod"
   # preset host-rtsan
   [rtsan]="clang-22 libclang-rt-22-dev"
 )
