@@ -9,7 +9,7 @@ OUT ?= out/demo
 BUILD = build/$(PRESET)
 INSTALL = cmake/install_packages.sh
 
-.PHONY: demo test check check-long cross bench paper-tables test-vm configure build clean
+.PHONY: demo test check check-long cross bench test-vm configure build clean
 
 demo: build
 	$(BUILD)/examples/dseam/dseam weld --camera sim --robot sim --out $(OUT)
@@ -40,14 +40,16 @@ cross:
 	cmake --preset cortex-m7-none-release
 	cmake --build --preset cortex-m7-none-release -j $(JOBS)
 
-bench paper-tables check-long: heavy
-	cmake --build --preset $(PRESET) -j $(JOBS) --target $@
-
-.PHONY: heavy
-heavy:
+# Times beside PCL in the same run.
+bench:
 	@$(INSTALL) quick bench
 	cmake --preset $(PRESET) -DDSEAM_BUILD_BENCH=ON
 	cmake --build --preset $(PRESET) -j $(JOBS)
+	$(BUILD)/tests/bench/core_bench
+
+# The campaigns and soaks that `make test` leaves out: hours.
+check-long: build
+	ctest --preset $(PRESET) -L long
 
 test-vm: build
 	@$(INSTALL) vm

@@ -14,7 +14,7 @@ declare -A packages=(
   # make cross: aarch64 under an emulator, bare-metal Cortex-M7
   [cross]="g++-aarch64-linux-gnu qemu-user googletest gcc-arm-none-eabi libnewlib-arm-none-eabi
            libstdc++-arm-none-eabi-dev qemu-system-arm"
-  # make bench, make paper-tables, make check-long: the peers
+  # make bench: the peers
   [bench]="libpcl-dev libopencv-dev libnanoflann-dev libbenchmark-dev valgrind gcovr"
   # make test-vm: a guest with real kernel drivers
   [vm]="qemu-system-x86 busybox-static iproute2 can-utils v4l-utils rt-tests kmod"
