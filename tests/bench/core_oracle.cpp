@@ -17,8 +17,7 @@ namespace {
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 /// Both run over the same cells, so that each stage is compared by itself.
-void compare(const char *name, const test::OwnedCloud &cloud, float cell_mm,
-             float radius_mm) {
+void compare(const char *name, const test::OwnedCloud &cloud, float cell_mm, float radius_mm) {
   CoreChain core(cloud, cell_mm, radius_mm);
   core.crop();
   core.clean();
@@ -33,14 +32,13 @@ void compare(const char *name, const test::OwnedCloud &cloud, float cell_mm,
     both += their_set.count(static_cast<int>(i));
   }
   const std::size_t kept_by_one = theirs.size() + core.kept.size() - 2 * both;
-  const double alike = 1.0 - static_cast<double>(kept_by_one) /
-                                 static_cast<double>(core.cropped.size());
-  std::printf("%s: outliers kept alike %.4f %% (%zu, %zu)\n", name,
-              100.0 * alike, core.kept.size(), theirs.size());
+  const double alike =
+      1.0 - static_cast<double>(kept_by_one) / static_cast<double>(core.cropped.size());
+  std::printf("%s: outliers kept alike %.4f %% (%zu, %zu)\n", name, 100.0 * alike, core.kept.size(),
+              theirs.size());
 
   // From here on both get the core's cells.
-  PclPeer cells(core.cleaned.view().x, core.cleaned.view().y,
-                core.cleaned.view().z);
+  PclPeer cells(core.cleaned.view().x, core.cleaned.view().y, core.cleaned.view().z);
   cells.downsample(cell_mm);
   std::vector<std::array<float, 3>> a;
   std::vector<std::array<float, 3>> b;
@@ -69,8 +67,8 @@ void compare(const char *name, const test::OwnedCloud &cloud, float cell_mm,
       worst = std::max(worst, std::fabs(a[i][axis] - b[i][axis]));
     }
   }
-  std::printf("%s: cells %zu and %zu, centroids differ by at most %.6f mm\n",
-              name, a.size(), b.size(), static_cast<double>(worst));
+  std::printf("%s: cells %zu and %zu, centroids differ by at most %.6f mm\n", name, a.size(),
+              b.size(), static_cast<double>(worst));
 
   const cloud::CloudView view = core.cells.view();
   PclPeer peer(view.x, view.y, view.z);
@@ -87,33 +85,27 @@ void compare(const char *name, const test::OwnedCloud &cloud, float cell_mm,
     if (core.normal_buffer.state[i] == cloud::NormalState::kGood) {
       ++good;
       flags_alike += open == (flags[i] != 0) ? 1U : 0U;
-      const geometry::Vec3f theirs_n{normals[3 * i], normals[3 * i + 1],
-                                     normals[3 * i + 2]};
-      const geometry::Vec3f turned =
-          geometry::cross(core.normal_buffer[i], theirs_n);
-      const double deg =
-          std::asin(std::min(1.0F, geometry::norm(turned))) * kDegPerRad;
+      const geometry::Vec3f theirs_n{normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]};
+      const geometry::Vec3f turned = geometry::cross(core.normal_buffer[i], theirs_n);
+      const double deg = std::asin(std::min(1.0F, geometry::norm(turned))) * kDegPerRad;
       worst_deg = std::max(worst_deg, deg);
       off += deg > 0.01 ? 1U : 0U;
     }
   }
-  std::printf("%s: %zu normals, %zu over 0.01 degree (worst %.4f); boundary "
-              "flags alike %.4f %%\n",
-              name, good, off, worst_deg,
-              100.0 * static_cast<double>(flags_alike) /
-                  static_cast<double>(good));
+  std::printf(
+      "%s: %zu normals, %zu over 0.01 degree (worst %.4f); boundary "
+      "flags alike %.4f %%\n",
+      name, good, off, worst_deg,
+      100.0 * static_cast<double>(flags_alike) / static_cast<double>(good));
 }
 
-} // namespace
-} // namespace dseam::bench
+}  // namespace
+}  // namespace dseam::bench
 
 int main() {
   using namespace dseam;
-  bench::compare("part, 120,887 points, 3 mm", bench::part_cloud(120887), 3.0F,
-                 7.5F);
-  bench::compare("part, 120,887 points, 1 mm", bench::part_cloud(120887), 1.0F,
-                 2.5F);
-  bench::compare("part, 1,000,000 points, 1 mm", bench::part_cloud(1000000),
-                 1.0F, 2.5F);
+  bench::compare("part, 120,887 points, 3 mm", bench::part_cloud(120887), 3.0F, 7.5F);
+  bench::compare("part, 120,887 points, 1 mm", bench::part_cloud(120887), 1.0F, 2.5F);
+  bench::compare("part, 1,000,000 points, 1 mm", bench::part_cloud(1000000), 1.0F, 2.5F);
   return 0;
 }
