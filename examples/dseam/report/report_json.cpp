@@ -159,13 +159,16 @@ Json poses_json(std::span<const splice::SplicedView> views) {
   Json poses = Json::object();
   for (std::size_t i = 0; i < views.size(); ++i) {
     const splice::SplicedView& view = views[i];
+    Json& pose = poses[std::to_string(i)] = {{"state", name(view.state)}};
+    if (view.state != splice::ViewState::kUsed) {
+      continue;  // No pose is known, and none is made up.
+    }
     const std::span<const double> covariance(view.covariance.data(), 36);  // Symmetric.
-    poses[std::to_string(i)] = {{"T_base_camera", geometry::to_row_major(view.T_base_camera)},
-                                {"state", name(view.state)},
-                                {"covariance_mm_rad", covariance},
-                                {"markers", view.num_markers},
-                                {"marker_rms_mm", view.marker_rms_mm},
-                                {"surface_rms_mm", view.surface_rms_mm}};
+    pose["T_base_camera"] = geometry::to_row_major(view.T_base_camera);
+    pose["covariance_mm_rad"] = covariance;
+    pose["markers"] = view.num_markers;
+    pose["marker_rms_mm"] = view.marker_rms_mm;
+    pose["surface_rms_mm"] = view.surface_rms_mm;
   }
   return poses;
 }
