@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "command/commands.hpp"
-#include "dseam/seam/closed_curve_fit.hpp"
+#include "dseam/seam/curve/closed_curve_fit.hpp"
 #include "input/cloud_reader.hpp"
 #include "job/lent_memory.hpp"
 #include "job/products.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "dseam/seam/surface.hpp"
+#include "dseam/seam/surface/surface.hpp"
 
 namespace dseam::program {
 namespace {

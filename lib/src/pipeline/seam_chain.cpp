@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "dseam/seam/quality.hpp"
+#include "dseam/seam/curve/quality.hpp"
 
 namespace dseam::pipeline {
 namespace {

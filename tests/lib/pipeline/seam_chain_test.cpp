@@ -5,58 +5,21 @@
 
 #include <Eigen/Geometry>
 #include <limits>
-#include <memory>
 #include <vector>
 
 #include "support/allocation_counter.hpp"
-#include "support/arena_owner.hpp"
-#include "support/joint_cloud.hpp"
+#include "support/seam_finder.hpp"
 
 namespace dseam::pipeline {
 namespace {
 
-using seam::Refusal;
 using seam::SeamReport;
 using test::JointCloud;
 using test::JointCloudConfig;
+using test::paper_joint;
+using test::SeamFinder;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-
-/// A chain with memory of its own, and what its last run gave.
-class Finder {
- public:
-  explicit Finder(const SeamChain::Config& config = {})
-      : owner_(SeamChain::bytes({})),
-        chain_(SeamChain::make(config, {}, owner_.arena()).value()),
-        storage_(8192),
-        points_(storage_) {}
-
-  SeamReport find(const SeamInput& in) { return chain_.run(in, points_); }
-  SeamReport find(const JointCloud& cloud) { return find(SeamInput{.cloud_base = cloud.view()}); }
-
-  [[nodiscard]] std::span<const seam::SeamPoint> points() const { return points_.view(); }
-  [[nodiscard]] double worst_error(const std::vector<Eigen::Vector3d>& truth) const {
-    double worst = 0.0;
-    for (const seam::SeamPoint& point : points()) {
-      worst = std::max(worst, test::distance_to(truth, point.p_base));
-    }
-    return worst;
-  }
-
- private:
-  test::ArenaOwner owner_;
-  SeamChain chain_;
-  std::vector<seam::SeamPoint> storage_;
-  Buffer<seam::SeamPoint> points_;
-};
-
-/// The joint of the paper.
-JointCloudConfig paper() {
-  JointCloudConfig config;
-  config.axis_angle_rad = 62.9 * kDegree;
-  config.eccentricity_mm = 1.4;
-  return config;
-}
 
 struct Joint {
   const char* name;
@@ -71,7 +34,7 @@ TEST_P(SeamOfJoint, lies_on_the_true_curve_all_round) {
     JointCloudConfig config = GetParam().config;
     config.seed = seed;
     const JointCloud cloud(config);
-    Finder finder;
+    SeamFinder finder;
 
     const SeamReport report = finder.find(cloud);
 
@@ -83,30 +46,30 @@ TEST_P(SeamOfJoint, lies_on_the_true_curve_all_round) {
 
 std::vector<Joint> joints() {
   std::vector<Joint> joints;
-  joints.push_back({"the_paper", paper(), 0.01});
+  joints.push_back({"the_paper", paper_joint(), 0.01});
   JointCloudConfig upright;
   joints.push_back({"upright", upright, 0.01});
-  JointCloudConfig eccentric = paper();
+  JointCloudConfig eccentric = paper_joint();
   eccentric.eccentricity_mm = 20.0;
   joints.push_back({"eccentric", eccentric, 0.01});
-  JointCloudConfig oval = paper();
+  JointCloudConfig oval = paper_joint();
   oval.nozzle_ovality_mm = 0.3;
   joints.push_back({"oval", oval, 0.03});
-  JointCloudConfig dead_band = paper();
+  JointCloudConfig dead_band = paper_joint();
   dead_band.dead_band_mm = 2.0;
   joints.push_back({"dead_band", dead_band, 0.02});
-  JointCloudConfig noisy = paper();
+  JointCloudConfig noisy = paper_joint();
   noisy.noise_mm = 0.3;
   joints.push_back({"noise_0_3", noisy, 0.1});
-  JointCloudConfig plane = paper();
+  JointCloudConfig plane = paper_joint();
   plane.shell = JointCloudConfig::Shell::kPlane;
   joints.push_back({"plane", plane, 0.01});
-  JointCloudConfig sphere = paper();
+  JointCloudConfig sphere = paper_joint();
   sphere.shell = JointCloudConfig::Shell::kSphere;
   sphere.shell_radius_mm = 220.0;
   sphere.nozzle_radius_mm = 35.0;
   joints.push_back({"sphere", sphere, 0.01});
-  JointCloudConfig cone = paper();
+  JointCloudConfig cone = paper_joint();
   cone.nozzle_slope = -0.1;
   joints.push_back({"cone", cone, 0.01});
   return joints;
@@ -116,8 +79,8 @@ INSTANTIATE_TEST_SUITE_P(Joints, SeamOfJoint, testing::ValuesIn(joints()),
                          [](const auto& given) { return std::string(given.param.name); });
 
 TEST(SeamChain, gives_an_ordered_closed_curve_with_even_steps_and_the_normals_of_both_surfaces) {
-  const JointCloud cloud(paper());
-  Finder finder;
+  const JointCloud cloud(paper_joint());
+  SeamFinder finder;
 
   const SeamReport report = finder.find(cloud);
 
@@ -136,8 +99,8 @@ TEST(SeamChain, gives_an_ordered_closed_curve_with_even_steps_and_the_normals_of
 }
 
 TEST(SeamChain, finds_the_papers_dihedral_angles) {
-  const JointCloud cloud(paper());
-  Finder finder;
+  const JointCloud cloud(paper_joint());
+  SeamFinder finder;
 
   (void)finder.find(cloud);
 
@@ -153,7 +116,7 @@ TEST(SeamChain, finds_the_papers_dihedral_angles) {
 
 TEST(SeamChain, starts_at_the_angle_and_runs_in_the_direction_asked_for) {
   const JointCloud cloud(JointCloudConfig{});
-  Finder clockwise({.start_angle_rad = 0.5 * std::numbers::pi, .counter_clockwise = false});
+  SeamFinder clockwise({.start_angle_rad = 0.5 * std::numbers::pi, .counter_clockwise = false});
 
   (void)clockwise.find(cloud);
 
@@ -165,9 +128,9 @@ TEST(SeamChain, starts_at_the_angle_and_runs_in_the_direction_asked_for) {
 }
 
 TEST(SeamChain, the_same_cloud_gives_the_same_bits) {
-  const JointCloud cloud(paper());
-  Finder first;
-  Finder second;
+  const JointCloud cloud(paper_joint());
+  SeamFinder first;
+  SeamFinder second;
 
   (void)first.find(cloud);
   (void)second.find(cloud);
@@ -180,7 +143,7 @@ TEST(SeamChain, the_same_cloud_gives_the_same_bits) {
 }
 
 TEST(SeamChain, follows_the_part_into_any_frame) {
-  JointCloud cloud(paper());
+  JointCloud cloud(paper_joint());
   const Eigen::Matrix3d turn =
       (Eigen::AngleAxisd(2.1, Eigen::Vector3d(1.0, -2.0, 0.5).normalized())).toRotationMatrix();
   const Eigen::Vector3d shift(700.0, 80.0, 260.0);
@@ -189,7 +152,7 @@ TEST(SeamChain, follows_the_part_into_any_frame) {
     p = turn * p + shift;
   }
   cloud.transform(turn, shift, 1.0);
-  Finder finder;
+  SeamFinder finder;
 
   const SeamReport report = finder.find(cloud);
 
@@ -202,7 +165,7 @@ TEST(SeamChain, a_hole_is_reported_where_it_is_and_bridged_as_interpolated) {
   config.unseen_start_rad = 1.0;
   config.unseen_width_rad = 0.15 * 2.0 * std::numbers::pi;
   const JointCloud cloud(config);
-  Finder finder;
+  SeamFinder finder;
 
   const SeamReport report = finder.find(cloud);
 
@@ -213,65 +176,14 @@ TEST(SeamChain, a_hole_is_reported_where_it_is_and_bridged_as_interpolated) {
   EXPECT_LT(finder.worst_error(cloud.curve(3600, 0.0)), 0.02);
 }
 
-struct Bad {
-  const char* name;
-  JointCloudConfig config;
-  Refusal refusal;
-};
-
-TEST(SeamChain, what_cannot_be_welded_is_refused_by_name) {
-  JointCloudConfig half;
-  half.unseen_width_rad = std::numbers::pi;
-  JointCloudConfig no_nozzle;
-  no_nozzle.nozzle = false;
-  JointCloudConfig plate = no_nozzle;
-  plate.shell = JointCloudConfig::Shell::kPlane;
-  JointCloudConfig no_shell;
-  no_shell.shell_seen = false;
-  JointCloudConfig wide_hole;
-  wide_hole.unseen_width_rad = 0.19 * 2.0 * std::numbers::pi;
-  const std::array<Bad, 5> bad = {{{"half seen", half, Refusal::kLowCoverage},
-                                   {"no nozzle", no_nozzle, Refusal::kOneSurface},
-                                   {"plate", plate, Refusal::kCoplanar},
-                                   {"nozzle only", no_shell, Refusal::kOneSurface},
-                                   {"wide hole", wide_hole, Refusal::kLargeHole}}};
-  for (const Bad& one : bad) {
-    Finder finder;
-
-    const SeamReport report = finder.find(JointCloud(one.config));
-
-    EXPECT_EQ(report.refusal, one.refusal) << one.name << ": " << name(report.refusal);
-  }
-}
-
-TEST(SeamChain, an_empty_cloud_and_one_of_nan_are_refused_as_empty) {
-  Finder finder;
-  const std::vector<float> nan(100, std::numeric_limits<float>::quiet_NaN());
-
-  const SeamReport empty = finder.find(SeamInput{});
-  const SeamReport all_nan = finder.find(SeamInput{.cloud_base = {{nan, nan, nan}, {}, {}}});
-
-  EXPECT_EQ(empty.refusal, Refusal::kEmptyCloud);
-  EXPECT_EQ(all_nan.refusal, Refusal::kEmptyCloud);
-  EXPECT_EQ(all_nan.num_not_finite, 100U);
-}
-
-TEST(SeamChain, a_cloud_in_metres_is_named) {
-  JointCloud cloud{JointCloudConfig{}};
-  cloud.transform(Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero(), 1e-3);
-  Finder finder;
-
-  EXPECT_EQ(finder.find(cloud).refusal, Refusal::kNotMillimetres);
-}
-
 TEST(SeamChain, duplicate_and_wild_points_change_nothing_that_matters) {
-  JointCloud cloud(paper());
+  JointCloud cloud(paper_joint());
   for (int i = 0; i < 20000; ++i) {
     cloud.add({10.0, 10.0, -300.0});
   }
   cloud.add({1e30, 0.0, 0.0});
   cloud.add({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0});
-  Finder finder;
+  SeamFinder finder;
 
   const SeamReport report = finder.find(cloud);
 
@@ -280,56 +192,14 @@ TEST(SeamChain, duplicate_and_wild_points_change_nothing_that_matters) {
   EXPECT_LT(finder.worst_error(cloud.curve(3600, 0.0)), 0.02);
 }
 
-TEST(SeamChain, a_region_without_the_seam_and_a_wrong_radius_are_named) {
-  const JointCloud cloud(paper());
-  SeamInput elsewhere{.cloud_base = cloud.view()};
-  elsewhere.region = RegionOfInterest{{500.0, 500.0, 500.0}, {600.0, 600.0, 600.0}};
-  SeamInput other_radius{.cloud_base = cloud.view()};
-  other_radius.expected_radius_mm = 30.0;
-  Finder finder;
-
-  EXPECT_EQ(finder.find(elsewhere).refusal, Refusal::kOutsideRegion);
-  EXPECT_EQ(finder.find(other_radius).refusal, Refusal::kOutsideRegion);
-}
-
-TEST(SeamChain, a_reference_curve_that_the_joint_does_not_have_is_named) {
-  const JointCloud cloud(paper());
-  for (const auto reference :
-       {seam::ReferenceCurve::kGapMiddle, seam::ReferenceCurve::kNozzleEdge}) {
-    Finder finder({.reference = reference});
-
-    EXPECT_EQ(finder.find(cloud).refusal, Refusal::kNoSuchReference);
-  }
-}
-
-TEST(SeamChain, a_full_output_is_named) {
-  const JointCloud cloud(paper());
-  test::ArenaOwner owner(SeamChain::bytes({}));
-  SeamChain chain = SeamChain::make({}, {}, owner.arena()).value();
-  std::array<seam::SeamPoint, 100> storage;
-  Buffer<seam::SeamPoint> out{std::span<seam::SeamPoint>(storage)};
-
-  EXPECT_EQ(chain.run(SeamInput{.cloud_base = cloud.view()}, out).refusal, Refusal::kFull);
-}
-
 TEST(SeamChain, run_does_not_allocate) {
-  const JointCloud cloud(paper());
-  Finder finder;
+  const JointCloud cloud(paper_joint());
+  SeamFinder finder;
   const test::AllocationCounter allocations;
 
   (void)finder.find(cloud);
 
   EXPECT_EQ(allocations.count(), 0U);
-}
-
-TEST(SeamChain, make_names_a_small_arena_and_a_bad_configuration) {
-  std::array<std::byte, 1000> little{};
-  Arena arena(little);
-  test::ArenaOwner owner(SeamChain::bytes({}));
-
-  EXPECT_EQ(SeamChain::make({}, {}, arena).error(), Errc::kOutOfMemory);
-  EXPECT_EQ(SeamChain::make({.point_spacing_mm = -1.0}, {}, owner.arena()).error(),
-            Errc::kInvalidArgument);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/seam/closed_curve_fit.hpp"
+#include "dseam/seam/curve/closed_curve_fit.hpp"
 
 #include <gtest/gtest.h>
 

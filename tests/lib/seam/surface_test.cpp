@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/seam/surface.hpp"
+#include "dseam/seam/surface/surface.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "dseam/seam/seam_curve.hpp"
-#include "dseam/seam/surface.hpp"
+#include "dseam/seam/surface/surface.hpp"
 
 namespace dseam::seam {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/seam/residual_model.hpp"
+#include "dseam/seam/joint/residual_model.hpp"
 
 #include <algorithm>
 #include <cmath>

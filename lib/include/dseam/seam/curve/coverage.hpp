@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "dseam/seam/edge_curve.hpp"
-#include "dseam/seam/joint_fit.hpp"
+#include "dseam/seam/edge/edge_curve.hpp"
+#include "dseam/seam/joint/joint_fit.hpp"
 #include "dseam/seam/seam_report.hpp"
 
 namespace dseam::seam {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <span>
 
-#include "dseam/seam/cell_map.hpp"
-#include "dseam/seam/surface.hpp"
+#include "dseam/seam/surface/cell_map.hpp"
+#include "dseam/seam/surface/surface.hpp"
 
 namespace dseam::seam {
 

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include "dseam/seam/edge_scanner.hpp"
+#include "dseam/seam/edge/edge_scanner.hpp"
 
 namespace dseam::seam {
 namespace {

@@ -9,8 +9,8 @@
 #include "dseam/base/arena.hpp"
 #include "dseam/base/buffer.hpp"
 #include "dseam/depth/depth_image.hpp"
-#include "dseam/seam/edge_curve.hpp"
-#include "dseam/seam/joint_fit.hpp"
+#include "dseam/seam/edge/edge_curve.hpp"
+#include "dseam/seam/joint/joint_fit.hpp"
 #include "dseam/splice/spliced_view.hpp"
 
 namespace dseam::seam {

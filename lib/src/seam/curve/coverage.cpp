@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/seam/coverage.hpp"
+#include "dseam/seam/curve/coverage.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "dseam/seam/coverage.hpp"
-#include "dseam/seam/joint_fit.hpp"
+#include "dseam/seam/curve/coverage.hpp"
+#include "dseam/seam/joint/joint_fit.hpp"
 #include "dseam/seam/seam_report.hpp"
 
 namespace dseam::seam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/seam/dense_solver.hpp"
+#include "dseam/seam/joint/dense_solver.hpp"
 
 #include <cmath>
 

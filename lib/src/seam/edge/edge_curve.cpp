@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/seam/edge_curve.hpp"
+#include "dseam/seam/edge/edge_curve.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "dseam/seam/dense_solver.hpp"
+#include "dseam/seam/joint/dense_solver.hpp"
 
 namespace dseam::seam {
 namespace {

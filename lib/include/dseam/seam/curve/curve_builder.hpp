@@ -6,9 +6,9 @@
 #include <span>
 
 #include "dseam/base/buffer.hpp"
-#include "dseam/seam/coverage.hpp"
-#include "dseam/seam/edge_curve.hpp"
-#include "dseam/seam/joint_fit.hpp"
+#include "dseam/seam/curve/coverage.hpp"
+#include "dseam/seam/edge/edge_curve.hpp"
+#include "dseam/seam/joint/joint_fit.hpp"
 #include "dseam/seam/seam_curve.hpp"
 
 namespace dseam::seam {

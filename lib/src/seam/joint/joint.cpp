@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dseam/seam/joint/joint.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-
-#include "dseam/seam/ring_finder.hpp"
 
 namespace dseam::seam {
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "dseam/base/arena.hpp"
-#include "dseam/seam/dense_solver.hpp"
-#include "dseam/seam/ring_finder.hpp"
+#include "dseam/seam/joint/dense_solver.hpp"
+#include "dseam/seam/joint/joint.hpp"
 
 namespace dseam::seam {
 

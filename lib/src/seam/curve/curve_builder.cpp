@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/seam/curve_builder.hpp"
+#include "dseam/seam/curve/curve_builder.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/seam/ring_finder.hpp"
+#include "dseam/seam/joint/ring_finder.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

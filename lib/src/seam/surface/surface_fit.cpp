@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/seam/surface_fit.hpp"
+#include "dseam/seam/surface/surface_fit.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/seam/cell_map.hpp"
+#include "dseam/seam/surface/cell_map.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

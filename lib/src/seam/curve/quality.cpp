@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/seam/quality.hpp"
+#include "dseam/seam/curve/quality.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

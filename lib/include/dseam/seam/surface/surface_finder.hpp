@@ -5,8 +5,8 @@
 
 #include "dseam/base/arena.hpp"
 #include "dseam/base/buffer.hpp"
-#include "dseam/seam/cell_map.hpp"
-#include "dseam/seam/surface_fit.hpp"
+#include "dseam/seam/surface/cell_map.hpp"
+#include "dseam/seam/surface/surface_fit.hpp"
 
 namespace dseam::seam {
 

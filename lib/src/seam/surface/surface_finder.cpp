@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/seam/surface_finder.hpp"
+#include "dseam/seam/surface/surface_finder.hpp"
 
 #include <array>
 #include <cmath>

@@ -7,8 +7,8 @@
 #include "dseam/base/arena.hpp"
 #include "dseam/base/buffer.hpp"
 #include "dseam/cloud/cloud.hpp"
-#include "dseam/seam/residual_model.hpp"
-#include "dseam/seam/ring_finder.hpp"
+#include "dseam/seam/joint/joint.hpp"
+#include "dseam/seam/joint/residual_model.hpp"
 
 namespace dseam::seam {
 

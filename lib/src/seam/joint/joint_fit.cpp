@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/seam/joint_fit.hpp"
+#include "dseam/seam/joint/joint_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "dseam/seam/surface/surface_fit.hpp"
 
 namespace dseam::seam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/seam/edge_scanner.hpp"
+#include "dseam/seam/edge/edge_scanner.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "dseam/pipeline/seam_chain.hpp"
+#include "support/seam_finder.hpp"
+
+namespace dseam::pipeline {
+namespace {
+
+using seam::Refusal;
+using seam::SeamReport;
+using test::JointCloud;
+using test::JointCloudConfig;
+using test::paper_joint;
+using test::SeamFinder;
+
+struct Bad {
+  const char* name;
+  JointCloudConfig config;
+  Refusal refusal;
+};
+
+TEST(SeamRefusal, what_cannot_be_welded_is_refused_by_name) {
+  JointCloudConfig half;
+  half.unseen_width_rad = std::numbers::pi;
+  JointCloudConfig no_nozzle;
+  no_nozzle.nozzle = false;
+  JointCloudConfig plate = no_nozzle;
+  plate.shell = JointCloudConfig::Shell::kPlane;
+  JointCloudConfig no_shell;
+  no_shell.shell_seen = false;
+  JointCloudConfig wide_hole;
+  wide_hole.unseen_width_rad = 0.19 * 2.0 * std::numbers::pi;
+  const std::array<Bad, 5> bad = {{{"half seen", half, Refusal::kLowCoverage},
+                                   {"no nozzle", no_nozzle, Refusal::kOneSurface},
+                                   {"plate", plate, Refusal::kCoplanar},
+                                   {"nozzle only", no_shell, Refusal::kOneSurface},
+                                   {"wide hole", wide_hole, Refusal::kLargeHole}}};
+  for (const Bad& one : bad) {
+    SeamFinder finder;
+
+    const SeamReport report = finder.find(JointCloud(one.config));
+
+    EXPECT_EQ(report.refusal, one.refusal) << one.name << ": " << name(report.refusal);
+  }
+}
+
+TEST(SeamRefusal, an_empty_cloud_and_one_of_nan_are_refused_as_empty) {
+  SeamFinder finder;
+  const std::vector<float> nan(100, std::numeric_limits<float>::quiet_NaN());
+
+  const SeamReport empty = finder.find(SeamInput{});
+  const SeamReport all_nan = finder.find(SeamInput{.cloud_base = {{nan, nan, nan}, {}, {}}});
+
+  EXPECT_EQ(empty.refusal, Refusal::kEmptyCloud);
+  EXPECT_EQ(all_nan.refusal, Refusal::kEmptyCloud);
+  EXPECT_EQ(all_nan.num_not_finite, 100U);
+}
+
+TEST(SeamRefusal, a_cloud_in_metres_is_named) {
+  JointCloud cloud{JointCloudConfig{}};
+  cloud.transform(Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero(), 1e-3);
+  SeamFinder finder;
+
+  EXPECT_EQ(finder.find(cloud).refusal, Refusal::kNotMillimetres);
+}
+
+TEST(SeamRefusal, a_region_without_the_seam_and_a_wrong_radius_are_named) {
+  const JointCloud cloud(paper_joint());
+  SeamInput elsewhere{.cloud_base = cloud.view()};
+  elsewhere.region = RegionOfInterest{{500.0, 500.0, 500.0}, {600.0, 600.0, 600.0}};
+  SeamInput other_radius{.cloud_base = cloud.view()};
+  other_radius.expected_radius_mm = 30.0;
+  SeamFinder finder;
+
+  EXPECT_EQ(finder.find(elsewhere).refusal, Refusal::kOutsideRegion);
+  EXPECT_EQ(finder.find(other_radius).refusal, Refusal::kOutsideRegion);
+}
+
+TEST(SeamRefusal, a_reference_curve_that_the_joint_does_not_have_is_named) {
+  const JointCloud cloud(paper_joint());
+  for (const auto reference :
+       {seam::ReferenceCurve::kGapMiddle, seam::ReferenceCurve::kNozzleEdge}) {
+    SeamFinder finder({.reference = reference});
+
+    EXPECT_EQ(finder.find(cloud).refusal, Refusal::kNoSuchReference);
+  }
+}
+
+TEST(SeamRefusal, a_full_output_is_named) {
+  const JointCloud cloud(paper_joint());
+  test::ArenaOwner owner(SeamChain::bytes({}));
+  SeamChain chain = SeamChain::make({}, {}, owner.arena()).value();
+  std::array<seam::SeamPoint, 100> storage;
+  Buffer<seam::SeamPoint> out{std::span<seam::SeamPoint>(storage)};
+
+  EXPECT_EQ(chain.run(SeamInput{.cloud_base = cloud.view()}, out).refusal, Refusal::kFull);
+}
+
+TEST(SeamRefusal, make_names_a_small_arena_and_a_bad_configuration) {
+  std::array<std::byte, 1000> little{};
+  Arena arena(little);
+  test::ArenaOwner owner(SeamChain::bytes({}));
+
+  EXPECT_EQ(SeamChain::make({}, {}, arena).error(), Errc::kOutOfMemory);
+  EXPECT_EQ(SeamChain::make({.point_spacing_mm = -1.0}, {}, owner.arena()).error(),
+            Errc::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace dseam::pipeline
