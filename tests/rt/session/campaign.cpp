@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign.hpp"
 
-#include "faults.hpp"
+#include "rt/session/cell/faults.hpp"
 
 namespace dseam::test {
 namespace {

@@ -10,8 +10,8 @@
 #include "dseam/hal/fake/manual_clock.hpp"
 #include "dseam/link/receiver.hpp"
 #include "dseam/rt/weld_session.hpp"
+#include "rt/session/cell/virtual_bus.hpp"
 #include "support/arena_owner.hpp"
-#include "virtual_bus.hpp"
 
 namespace dseam::test {
 

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
+#include "../torch_curve.hpp"
 #include "dseam/torch/path_planner.hpp"
 #include "path_writer.hpp"
-#include "torch_curve.hpp"
 
 namespace dseam::torch {
 

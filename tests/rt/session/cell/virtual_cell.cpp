@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "virtual_cell.hpp"
+#include "rt/session/cell/virtual_cell.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "faults.hpp"
+#include "rt/session/cell/faults.hpp"
 
 namespace dseam::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "virtual_cell.hpp"
+#include "rt/session/cell/virtual_cell.hpp"
 
 namespace dseam::test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "virtual_bus.hpp"
+#include "rt/session/cell/virtual_bus.hpp"
 
 #include <utility>
 
