@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes of the time law. time_scaling_speed.cpp finds the speed of each cell.
+// The nodes of the time law. time_limits.cpp finds what speed, acceleration and jerk each cell may
+// have, time_scaling_speed.cpp the speed that it gets.
 #include "dseam/trajectory/time_scaling.hpp"
 
 #include <algorithm>
@@ -7,7 +8,6 @@
 
 #include "dseam/trajectory/path_spline.hpp"
 #include "stretch.hpp"
-#include "time_shares.hpp"
 
 namespace dseam::trajectory {
 namespace {
@@ -78,17 +78,23 @@ TimeScaling::Report TimeScaling::run(torch::PathView path) noexcept {
   if (report.state != State::kTimed) {
     return report;
   }
-  choose_window(path);
-  bool fits = append_rest(0, 0.0, path[0].dwell_s);
-  for (std::size_t begin = 0; fits && begin + 1 < path.size();) {
+  bool fits = cut_path(path);
+  choose_acceleration();
+  fits = fits && append_rest(0, 0.0, path[0].dwell_s);
+  for (std::size_t begin = 0, cell = 0; fits && begin + 1 < path.size();) {
     const std::size_t end = stretch_end(path, begin);
-    const double s_end = path[end].s_mm - path[0].s_mm;
-    if (path[end].s_mm - path[begin].s_mm > kSamePlaceMm) {
-      fits = cut_cells(path, begin, end) && append_stretch(path, begin, report);
+    std::size_t end_cell = cell;
+    while (end_cell < num_cells_ && cells_[end_cell].point < end) {
+      ++end_cell;
+    }
+    if (end_cell > cell) {
+      fits = append_stretch(cells_.subspan(cell, end_cell - cell), path[begin].s_mm - path[0].s_mm,
+                            report);
       ++report.stops;
     }
-    fits = fits && append_rest(end, s_end, path[end].dwell_s);
+    fits = fits && append_rest(end, path[end].s_mm - path[0].s_mm, path[end].dwell_s);
     begin = end;
+    cell = end_cell;
   }
   const double length_mm = path.back().s_mm - path.front().s_mm;
   fits = fits && append_node({duration_s_, length_mm, 0.0, 0.0,
@@ -133,32 +139,21 @@ TimeScaling::State TimeScaling::check(torch::PathView path) const noexcept {
   return moves || rests ? State::kTimed : State::kNoLength;
 }
 
-/// One window for the whole path: wide enough for the jerk wherever the path bends most, and no
-/// wider than reaching the highest speed needs.
-void TimeScaling::choose_window(torch::PathView path) noexcept {
-  double tangent = 1.0;
-  double speed = 0.0;
-  for (std::size_t begin = 0; begin + 1 < path.size();) {
+bool TimeScaling::cut_path(torch::PathView path) noexcept {
+  bool fits = true;
+  num_cells_ = 0;
+  for (std::size_t begin = 0; fits && begin + 1 < path.size();) {
     const std::size_t end = stretch_end(path, begin);
-    for (std::size_t i = begin; i < end && path[i + 1].s_mm - path[i].s_mm > kSamePlaceMm; ++i) {
-      const PathSpan span(path, begin, end, i);
-      tangent = std::max(tangent, largest_rates(span, 0.0, 1.0).tangent);
-      speed = std::max(speed, std::min(path[i].speed_mm_s, limits_.speed_mm_s));
-    }
+    fits = path[end].s_mm - path[begin].s_mm <= kSamePlaceMm || cut_stretch(path, begin, end);
     begin = end;
   }
-  const double jerk = kJerkAlong * limits_.jerk_mm_s3 / tangent;
-  max_acceleration_mm_s2_ =
-      std::min(kAlongShare * limits_.acceleration_mm_s2 / tangent, std::sqrt(0.5 * speed * jerk));
-  window_s_ = 2.0 * max_acceleration_mm_s2_ / jerk;
+  return fits;
 }
 
-bool TimeScaling::cut_cells(torch::PathView path, std::size_t begin, std::size_t end) noexcept {
+bool TimeScaling::cut_stretch(torch::PathView path, std::size_t begin, std::size_t end) noexcept {
   const std::size_t intervals = end - begin;
   const std::size_t pieces = (kMinCells + intervals - 1) / intervals;
-  double most_turn = 0.0;
-  num_cells_ = 0;
-  if (intervals * pieces > cells_.size()) {
+  if (intervals * pieces > cells_.size() - num_cells_) {
     return false;
   }
   for (std::size_t i = begin; i < end; ++i) {
@@ -171,37 +166,34 @@ bool TimeScaling::cut_cells(torch::PathView path, std::size_t begin, std::size_t
       cell.point = static_cast<std::uint32_t>(i);
       cell.length_mm = span.s_at(u(k + 1)) - span.s_at(u(k));
       cell.rates = largest_rates(span, u(k), u(k + 1));
-      most_turn = std::max(most_turn, cell.rates.turn);
+      bound_speed(path[i].speed_mm_s, cell);
     }
   }
-  stretch_acceleration_mm_s2_ = max_acceleration_mm_s2_;
-  if (most_turn > 0.0) {
-    stretch_acceleration_mm_s2_ = std::min(
-        stretch_acceleration_mm_s2_, kAlongShare * limits_.angular_acceleration_rad_s2 / most_turn);
-  }
-  for (std::size_t k = 0; k < num_cells_; ++k) {
-    bound_cell(path[cells_[k].point].speed_mm_s, cells_[k]);
-  }
-  erode();
-  ramp();
   return true;
 }
 
-bool TimeScaling::append_stretch(torch::PathView path, std::size_t begin, Report& report) noexcept {
-  double s = path[begin].s_mm - path[0].s_mm;
-  for (std::size_t k = 0; k < num_cells_; ++k) {
-    const Cell& cell = cells_[k];
-    const double next_v = k + 1 < num_cells_ ? cells_[k + 1].v_mm_s : 0.0;
-    if (!append_node({duration_s_, s, cell.v_mm_s, 0.0, cell.point, cell.limited_by, false})) {
+bool TimeScaling::append_stretch(std::span<Cell> cells, double s_mm, Report& report) noexcept {
+  const double acceleration_mm_s2 = acceleration_on(cells);
+  erode(cells, acceleration_mm_s2);
+  ramp(cells, acceleration_mm_s2);
+  hold_peaks(cells);
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    Cell& cell = cells[k];
+    const double next_v = k + 1 < cells.size() ? cells[k + 1].v_mm_s : 0.0;
+    const bool held_back = std::min(cell.v_mm_s, next_v) < cell.max_v_mm_s * (1.0 - 1e-9);
+    if (held_back && cell.limited_by == LimitKind::kNone) {
+      cell.limited_by = LimitKind::kRamp;
+    }
+    if (!append_node({duration_s_, s_mm, cell.v_mm_s, 0.0, cell.point, cell.limited_by, false})) {
       return false;
     }
     report.slowed_mm[static_cast<std::size_t>(cell.limited_by)] += cell.length_mm;
     duration_s_ += 2.0 * cell.length_mm / (cell.v_mm_s + next_v);
-    s += cell.length_mm;
+    s_mm += cell.length_mm;
   }
   // The smoothed torch comes to rest a window later.
-  const bool fits = append_node(
-      {duration_s_, s, 0.0, 0.0, cells_[num_cells_ - 1].point, LimitKind::kRamp, false});
+  const bool fits =
+      append_node({duration_s_, s_mm, 0.0, 0.0, cells.back().point, LimitKind::kRamp, false});
   duration_s_ += window_s_;
   return fits;
 }

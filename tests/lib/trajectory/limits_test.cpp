@@ -102,7 +102,11 @@ TEST(Limits, are_kept_on_ten_thousand_random_paths) {
   EXPECT_LT(worst.jerk, kAllowed);
   EXPECT_LT(worst.angular_speed, kAllowed);
   EXPECT_LT(worst.angular_acceleration, kAllowed);
-  EXPECT_GT(worst.speed, 0.9);
+  EXPECT_GT(worst.speed, 0.9);  // Kept, and not by far.
+  EXPECT_GT(worst.acceleration, 0.9);
+  EXPECT_GT(worst.jerk, 0.9);
+  EXPECT_GT(worst.angular_speed, 0.9);
+  EXPECT_GT(worst.angular_acceleration, 0.9);
   EXPECT_GT(moved_mm, 1e5);
 }
 

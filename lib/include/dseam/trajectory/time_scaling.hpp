@@ -28,8 +28,9 @@ struct TimeNode {
 
 /// A path with its time law: s(t) is the mean of the nodes' s over the last `window_s` seconds.
 ///
-/// The mean of a velocity that keeps |a| <= A over a window of 2 A / J keeps |a| <= A and
-/// |jerk| <= J, so that ramps are jerk-limited by construction.
+/// The mean of a velocity that keeps |a| <= A over a window of A / J keeps |a| <= A, and |jerk| <=
+/// J where at least a window lies between speeding up and slowing down, so that ramps are
+/// jerk-limited by construction.
 struct TimedPathView {
   torch::PathView path;
   std::span<const TimeNode> nodes;
@@ -92,12 +93,17 @@ class TimeScaling {
   TimeScaling(const Limits& limits, std::span<TimeNode> nodes, std::span<Cell> cells) noexcept
       : limits_(limits), nodes_(nodes), cells_(cells) {}
   State check(torch::PathView path) const noexcept;
-  void choose_window(torch::PathView path) noexcept;
-  bool cut_cells(torch::PathView path, std::size_t begin, std::size_t end) noexcept;
-  void bound_cell(double asked_mm_s, Cell& cell) const noexcept;
-  void erode() noexcept;
-  void ramp() noexcept;
-  bool append_stretch(torch::PathView path, std::size_t begin, Report& report) noexcept;
+  bool cut_path(torch::PathView path) noexcept;
+  bool cut_stretch(torch::PathView path, std::size_t begin, std::size_t end) noexcept;
+  void bound_speed(double asked_mm_s, Cell& cell) const noexcept;
+  void choose_acceleration() noexcept;
+  [[nodiscard]] double jerk_beside(double acceleration_mm_s2) const noexcept;
+  [[nodiscard]] double acceleration_on(std::span<const Cell> cells) const noexcept;
+  void erode(std::span<Cell> cells, double acceleration_mm_s2) const noexcept;
+  static void ramp(std::span<Cell> cells, double acceleration_mm_s2) noexcept;
+  void hold_peaks(std::span<Cell> cells) const noexcept;
+  void hold_peak(std::span<Cell> cells, double end_mm_s, double top_mm_s) const noexcept;
+  bool append_stretch(std::span<Cell> cells, double s_mm, Report& report) noexcept;
   bool append_rest(std::size_t point, double s_mm, double rest_s) noexcept;
   bool append_node(TimeNode node) noexcept;
 
@@ -107,8 +113,7 @@ class TimeScaling {
   torch::PathView path_;
   std::size_t num_nodes_ = 0;
   std::size_t num_cells_ = 0;
-  double max_acceleration_mm_s2_ = 0.0;      ///< Of s; anywhere,
-  double stretch_acceleration_mm_s2_ = 0.0;  ///< and on the stretch in `cells_`.
+  double max_acceleration_mm_s2_ = 0.0;  ///< Of s.
   double window_s_ = 0.0;
   double duration_s_ = 0.0;
 };
