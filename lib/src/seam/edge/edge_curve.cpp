@@ -13,11 +13,14 @@ namespace {
 constexpr std::size_t kMinIntervals = 40;
 constexpr std::size_t kSectors = 36;
 constexpr std::size_t kMinSectors = 12;
-constexpr double kPull = 1e-3;      // Towards the middle of an interval that is kept already.
-constexpr double kFloorMm = 0.004;  // Below this a violation tells nothing.
-constexpr int kRounds = 14;
-constexpr double kFirstCutMm = 4.0;
-constexpr double kLastCutMm = 0.15;
+constexpr double kWrongShare = 0.01;  // Of the intervals: flying pixels, spatter, a clamp's shadow.
+constexpr double kFirstBlurMm = 0.3;  // Wide at first: the first curve may be anywhere.
+constexpr double kShrink = 0.5;
+constexpr double kLeastBlurMm = 0.004;
+constexpr int kRounds = 3;  // Newton steps at one blur.
+constexpr double kKinship =
+    2.0;  // Lines of pixels next to each other err alike: so many count once.
+constexpr double kMaxStepMm = 1.0;
 
 EdgeCurve::Vector basis_at(double phi_rad) noexcept {
   const double c1 = std::cos(phi_rad);
@@ -50,16 +53,25 @@ bool all_round(std::span<const EdgeInterval> intervals) noexcept {
   return static_cast<std::size_t>(std::count(seen.begin(), seen.end(), true)) >= kMinSectors;
 }
 
-// What is missing to bring `value` into the interval.
-double missing_of(const EdgeInterval& interval, double value) noexcept {
-  return value < interval.low_mm ? interval.low_mm - value
-                                 : std::min(0.0, interval.high_mm - value);
-}
+double logistic(double x) noexcept { return 1.0 / (1.0 + std::exp(-x)); }
 
-// A violation beyond the cut is a wrong interval: spatter, or a clamp's shadow.
-double trust(double missing_mm, double cut_mm) noexcept {
-  const double inside = 1.0 - missing_mm * missing_mm / (cut_mm * cut_mm);
-  return inside > 0.0 ? inside * inside : 0.0;
+// What one interval says to an edge at `value`.
+struct Vote {
+  double log_likelihood;
+  double pull;  // Its slope with the value.
+  double bend;  // Its curvature, positive; what a wrong interval is suspected of is left out.
+};
+
+Vote vote_of(const EdgeInterval& interval, double value, double blur_mm) noexcept {
+  const double above_low = logistic((value - interval.low_mm) / blur_mm);
+  const double below_high = logistic((interval.high_mm - value) / blur_mm);
+  const double width = (interval.high_mm - interval.low_mm) / blur_mm;
+  const double right = above_low * below_high * -std::expm1(-width);
+  const double likelihood = right + kWrongShare;
+  const double trust = right / likelihood;
+  return {std::log(likelihood), trust * (below_high - above_low) / blur_mm,
+          trust * (above_low * (1.0 - above_low) + below_high * (1.0 - below_high)) /
+              (blur_mm * blur_mm)};
 }
 
 }  // namespace
@@ -72,70 +84,80 @@ double EdgeCurve::value_at(const Vector& basis) const noexcept {
   return sum;
 }
 
-// One step of reweighted least squares; the mean squared violation before it.
-double EdgeCurve::improve(std::span<const EdgeInterval> intervals, double cut_mm,
-                          bool first) noexcept {
+// One Newton step; the likelihood before it.
+double EdgeCurve::improve(std::span<const EdgeInterval> intervals) noexcept {
   LentSymmetric normal(normal_, order_);
   std::fill(normal_.begin(), normal_.end(), 0.0);
   Vector right{};
-  double squares = 0.0;
+  double log_likelihood = 0.0;
   for (const EdgeInterval& interval : intervals) {
     const Vector b = basis_at(interval.phi_rad);
-    const double value = value_at(b);
-    const double missing = missing_of(interval, value);
-    const double middle = 0.5 * (interval.low_mm + interval.high_mm) - value;
-    const bool kept = first || missing == 0.0;
-    const double weight = first ? 1.0 : (kept ? kPull : trust(missing, cut_mm));
+    const Vote vote = vote_of(interval, value_at(b), blur_mm_);
+    log_likelihood += vote.log_likelihood;
     for (std::size_t i = 0; i < order_; ++i) {
-      right[i] += weight * (kept ? middle : missing) * b[i];
+      right[i] += vote.pull * b[i];
       for (std::size_t k = 0; k <= i; ++k) {
-        normal.at(i, k) += weight * b[i] * b[k];
+        normal.at(i, k) += vote.bend * b[i] * b[k];
       }
     }
-    squares += std::min(missing * missing, cut_mm * cut_mm);
   }
   for (std::size_t i = 0; i < order_; ++i) {
-    normal.at(i, i) += 1e-9;
+    normal.at(i, i) = normal.at(i, i) * (1.0 + 1e-6) + 1e-6;
   }
   if (normal.factorise()) {
     normal.solve(std::span<double>(right).first(order_));
     for (std::size_t i = 0; i < order_; ++i) {
-      coefficients_[i] += right[i];
+      coefficients_[i] += std::clamp(right[i], -kMaxStepMm, kMaxStepMm);
     }
   }
-  return squares / static_cast<double>(intervals.size());
+  return log_likelihood;
 }
 
-double EdgeCurve::solve(std::span<const EdgeInterval> intervals, std::size_t order) noexcept {
+// From a wide blur to the one that the intervals themselves speak for.
+EdgeCurve::Fit EdgeCurve::solve(std::span<const EdgeInterval> intervals, const Vector& start,
+                                std::size_t order) noexcept {
   order_ = order;
-  coefficients_ = {};
-  double cut = kFirstCutMm;  // Wide at first: the first curve may be anywhere.
-  double mean_square = 0.0;
-  for (int round = 0; round < kRounds; ++round) {
-    mean_square = improve(intervals, cut, round == 0);
-    cut = std::max(kLastCutMm, 0.6 * cut);
+  coefficients_ = start;
+  Fit best;
+  for (double blur = kFirstBlurMm; blur >= kLeastBlurMm; blur *= kShrink) {
+    blur_mm_ = blur;
+    double log_likelihood = 0.0;
+    for (int round = 0; round < kRounds; ++round) {
+      log_likelihood = improve(intervals);
+    }
+    if (log_likelihood < best.log_likelihood) {
+      return best;
+    }
+    best = {log_likelihood, blur, order, coefficients_};
   }
-  return mean_square;
+  return best;
 }
 
 bool EdgeCurve::fit(std::span<const EdgeInterval> intervals) noexcept {
-  constexpr std::array<std::size_t, 5> kOrders = {1, 3, 5, 9, 13};
+  constexpr std::array<std::size_t, 6> kOrders = {1, 3, 5, 7, 9, 13};
   if (intervals.size() < kMinIntervals || !all_round(intervals)) {
     return false;
   }
-  const double n = static_cast<double>(intervals.size());
-  double best = 1e300;
-  std::size_t best_order = 1;
+  Vector start{};
+  for (const EdgeInterval& interval : intervals) {
+    start[0] += 0.5 * (interval.low_mm + interval.high_mm) / static_cast<double>(intervals.size());
+  }
+  const double count = static_cast<double>(intervals.size()) / kKinship;
+  double least = 1e300;
+  Fit best;
   for (const std::size_t order : kOrders) {
-    const double mean_square = solve(intervals, order);
-    const double criterion = n * std::log(mean_square + kFloorMm * kFloorMm) +
-                             2.0 * static_cast<double>(order) * std::log(n);
-    if (criterion < best) {
-      best = criterion;
-      best_order = order;
+    const Fit found = solve(intervals, start, order);
+    const double criterion =
+        -2.0 * found.log_likelihood / kKinship + static_cast<double>(order) * std::log(count);
+    if (criterion < least) {
+      least = criterion;
+      best = found;
     }
   }
-  scatter_mm_ = std::sqrt(solve(intervals, best_order));
+  order_ = best.order;
+  blur_mm_ = best.blur_mm;
+  coefficients_ = best.coefficients;
+  (void)improve(intervals);
   estimate_covariance(intervals);
   return std::all_of(coefficients_.begin(), coefficients_.end(),
                      [](double c) { return std::isfinite(c); });
@@ -151,15 +173,16 @@ void EdgeCurve::estimate_covariance(std::span<const EdgeInterval> intervals) noe
         continue;
       }
       const Vector b = basis_at(interval.phi_rad);
-      const double missing = missing_of(interval, value_at(b));
-      const double weight = missing == 0.0 ? kPull : trust(missing, kLastCutMm);
+      const double strength = vote_of(interval, value_at(b), blur_mm_).pull;
       for (std::size_t i = 0; i < order_; ++i) {
-        pull[i] += weight * missing * b[i];
+        pull[i] += strength * b[i];
       }
     }
+    // As many degrees of freedom as the fit took are missing in the pulls.
+    const double scale = double{kSectors} / static_cast<double>(kSectors - order_);
     for (std::size_t i = 0; i < order_; ++i) {
       for (std::size_t k = 0; k < order_; ++k) {
-        meat_[i * order_ + k] += pull[i] * pull[k];
+        meat_[i * order_ + k] += scale * pull[i] * pull[k];
       }
     }
   }

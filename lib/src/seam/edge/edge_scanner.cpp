@@ -18,6 +18,8 @@ constexpr double kMarginMm = 0.1;
 constexpr double kMarginNoises = 4.0;
 constexpr double kShellShare = 0.6;  // Of the margin: between the two a pixel tells nothing.
 constexpr std::size_t kMaxApart = 6;
+constexpr std::size_t kMaxFlying = 3;
+constexpr std::size_t kShellRun = 2;  // Pixels beside the last one.
 constexpr std::uint32_t kStride = 2;
 constexpr std::uint32_t kNoiseStride = 8;
 
@@ -189,30 +191,51 @@ std::optional<Eigen::Vector3d> EdgeScanner::on_shell(const depth::DepthImage& fr
   return p;
 }
 
-// A flying pixel hangs between two depths; it does not lie on the line through the next two. Two in
-// a row are rare, so the pixel after a doubtful one is sure.
+// A flying pixel hangs between two depths; it does not lie on the line through the next two. It may
+// have been a pixel of the shell, and so may the one after it: the first that fits is sure.
 std::optional<std::size_t> EdgeScanner::first_sure(std::size_t shell, std::size_t behind,
                                                    std::size_t count) const noexcept {
   const bool forward = behind > shell;
-  if (forward ? behind + 2 >= count : behind < 2) {
-    return std::nullopt;
+  for (std::size_t k = 0; k < kMaxFlying; ++k) {
+    if (forward ? behind + k + 2 >= count : behind < k + 2) {
+      return std::nullopt;
+    }
+    const std::size_t i = forward ? behind + k : behind - k;
+    const Pixel& next = line_[forward ? i + 1 : i - 1];
+    const Pixel& after = line_[forward ? i + 2 : i - 2];
+    if (line_[i].kind == Kind::kShell || line_[i].kind == Kind::kOther) {
+      return std::nullopt;
+    }
+    const double bend = line_[i].z_mm - 2.0F * next.z_mm + after.z_mm;
+    if (line_[i].kind == Kind::kBehind && next.kind != Kind::kNothing &&
+        after.kind != Kind::kNothing && std::abs(bend) < margin_mm_) {
+      return i;
+    }
   }
-  const std::size_t next = forward ? behind + 1 : behind - 1;
-  const std::size_t after = forward ? behind + 2 : behind - 2;
-  if (line_[next].kind == Kind::kNothing || line_[after].kind == Kind::kNothing) {
-    return std::nullopt;
+  return std::nullopt;
+}
+
+// The shell goes on away from the edge: one pixel of its height alone may be a flying one.
+bool EdgeScanner::goes_on(std::size_t shell, std::size_t behind, std::size_t count) const noexcept {
+  const bool forward = shell > behind;
+  bool found = false;
+  for (std::size_t k = 1; k <= kShellRun; ++k) {
+    if (forward ? shell + k >= count : shell < k) {
+      return false;
+    }
+    const Kind kind = line_[forward ? shell + k : shell - k].kind;
+    if (kind == Kind::kBehind || kind == Kind::kOther) {
+      return false;
+    }
+    found = found || kind == Kind::kShell;
   }
-  const float bend = line_[behind].z_mm - 2.0F * line_[next].z_mm + line_[after].z_mm;
-  if (std::abs(bend) < static_cast<float>(2.0 * margin_mm_)) {
-    return behind;
-  }
-  return line_[next].kind == Kind::kBehind ? std::optional(next) : std::nullopt;
+  return found;
 }
 
 void EdgeScanner::try_pair(const depth::DepthImage& frame, const Step& start, std::size_t shell,
                            std::size_t behind, std::size_t count) noexcept {
   const std::optional<std::size_t> sure = first_sure(shell, behind, count);
-  if (!sure) {
+  if (!sure || !goes_on(shell, behind, count)) {
     return;
   }
   const auto low = on_shell(frame, start, *sure);
@@ -221,11 +244,23 @@ void EdgeScanner::try_pair(const depth::DepthImage& frame, const Step& start, st
     return;
   }
   const double low_mm = fit_->outside_nozzle(*low);
-  const double high_mm = fit_->outside_nozzle(*high);
+  const double high_mm = fit_->outside_nozzle(*high) + past_edge_mm(frame, start, shell, *high);
   if (low_mm < high_mm && low_mm > -kInsideMm && high_mm < kReachMm) {
     const double phi = angle_about(fit_->joint().nozzle, fit_->frame(), 0.5 * (*low + *high));
     (void)intervals_.append({phi, low_mm, high_mm});
   }
+}
+
+// Where the ray runs away from the nozzle it may have met the hole's wall just under the shell,
+// which counts as shell down to the margin: so far past the edge may the pixel be.
+double EdgeScanner::past_edge_mm(const depth::DepthImage& frame, const Step& start, std::size_t i,
+                                 const Eigen::Vector3d& p) const noexcept {
+  const double u = start.u + (start.along_u ? static_cast<double>(i) : 0.0);
+  const double v = start.v + (start.along_u ? 0.0 : static_cast<double>(i));
+  const Eigen::Vector3d direction = T_base_camera_.rotation * ray_of(frame.intrinsics, u, v);
+  const double outwards = direction.dot(outward_normal(fit_->joint().nozzle, p));
+  const double down = -direction.dot(shell_normal(fit_->joint(), p));
+  return down > 0.0 ? std::max(0.0, outwards / down) * kShellShare * margin_mm_ : 0.0;
 }
 
 }  // namespace dseam::seam

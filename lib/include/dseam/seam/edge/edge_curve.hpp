@@ -17,11 +17,13 @@ struct EdgeInterval {
 
 /// The shell's edge at a gap: its distance from the nozzle as a periodic function of the angle.
 ///
-/// Fitted so that it passes through the intervals. Every interval is true, however wide a pixel's
-/// footprint or a dropped pixel made it; so there is no half-pixel bias to correct, and many wide
-/// intervals leave a narrow way.
+/// Each end of an interval is a vote, past the edge or on the shell, and the curve is where the
+/// votes change. Every interval is true, however wide a pixel's footprint or a dropped pixel made
+/// it; so there is no half-pixel bias to correct, and many wide intervals leave a narrow way. A
+/// share of wrong intervals is part of the model. The order is chosen by the Bayesian information
+/// criterion.
 ///
-/// Source:  interval regression with a squared hinge loss.
+/// Source:  logistic regression with a share of wrong labels.
 class EdgeCurve {
  public:
   static constexpr std::size_t kMaxHarmonics = 6;
@@ -33,22 +35,30 @@ class EdgeCurve {
 
   [[nodiscard]] double at(double phi_rad) const noexcept;
   [[nodiscard]] double variance_at(double phi_rad) const noexcept;
-  [[nodiscard]] double scatter_mm() const noexcept { return scatter_mm_; }
+  /// How far the edge itself scatters about the curve, as the votes tell.
+  [[nodiscard]] double blur_mm() const noexcept { return blur_mm_; }
   [[nodiscard]] std::size_t harmonics() const noexcept { return (order_ - 1) / 2; }
 
  private:
   using Storage = std::array<double, kMaxOrder * kMaxOrder>;
+  struct Fit {
+    double log_likelihood = -1e300;
+    double blur_mm = 1.0;
+    std::size_t order = 1;
+    Vector coefficients{};
+  };
 
   [[nodiscard]] double value_at(const Vector& basis) const noexcept;
-  double improve(std::span<const EdgeInterval> intervals, double cut_mm, bool first) noexcept;
-  double solve(std::span<const EdgeInterval> intervals, std::size_t order) noexcept;
+  double improve(std::span<const EdgeInterval> intervals) noexcept;
+  Fit solve(std::span<const EdgeInterval> intervals, const Vector& start,
+            std::size_t order) noexcept;
   void estimate_covariance(std::span<const EdgeInterval> intervals) noexcept;
 
   std::size_t order_ = 1;
+  double blur_mm_ = 1.0;
   Vector coefficients_{};
   Storage normal_{};  // Its Cholesky factor after improve().
   Storage meat_{};
-  double scatter_mm_ = 0.0;
 };
 
 }  // namespace dseam::seam

@@ -82,6 +82,10 @@ class EdgeScanner {
                 std::size_t behind, std::size_t count) noexcept;
   [[nodiscard]] std::optional<std::size_t> first_sure(std::size_t shell, std::size_t behind,
                                                       std::size_t count) const noexcept;
+  [[nodiscard]] bool goes_on(std::size_t shell, std::size_t behind,
+                             std::size_t count) const noexcept;
+  [[nodiscard]] double past_edge_mm(const depth::DepthImage& frame, const Step& start,
+                                    std::size_t i, const Eigen::Vector3d& p) const noexcept;
   [[nodiscard]] std::optional<Eigen::Vector3d> on_shell(const depth::DepthImage& frame,
                                                         const Step& start,
                                                         std::size_t i) const noexcept;
