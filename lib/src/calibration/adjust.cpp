@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "calibration/stations.hpp"
+#include "dseam/geometry/symmetric_matrix.hpp"
 
 namespace dseam::calibration {
 namespace {
@@ -54,7 +55,7 @@ struct NormalEquations {
 
   void add(const PosePair& station, const Loop& loop, const HandEyeConfig& config) noexcept {
     const Matrix6 covariance = misclosure_covariance(station, loop, config);
-    const Matrix6 weight = covariance.llt().solve(Matrix6::Identity());
+    const Matrix6 weight = geometry::inverse_of_symmetric<6>(covariance);
     const Vector6 r = misclosure(station, loop);
     const Matrix6 j = jacobian(station, loop);
     const Matrix6 weighted = weight * j;
@@ -67,7 +68,7 @@ struct NormalEquations {
   }
   /// The information about X when W is unknown: the Schur complement.
   [[nodiscard]] Matrix6 information() const noexcept {
-    return xx - xw * ww.llt().solve(xw.transpose());
+    return xx - xw * geometry::solve_columns(Eigen::LLT<Matrix6>(ww), Matrix6(xw.transpose()));
   }
 };
 
@@ -117,7 +118,7 @@ Adjusted adjust(const Stations& stations, const Loop& start, const HandEyeConfig
     step = improve(normal_equations(stations, result.loop, config), result.loop);
   }
   const NormalEquations equations = normal_equations(stations, result.loop, config);
-  result.covariance = equations.information().ldlt().solve(Matrix6::Identity());
+  result.covariance = geometry::inverse_of_symmetric<6>(equations.information());
   result.chi_square = equations.chi_square;
   return result;
 }

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dseam/geometry/symmetric_matrix.hpp"
+
 namespace dseam::geometry {
 namespace {
 
@@ -97,8 +99,7 @@ Matrix5 scaled(const Matrix5& h) noexcept {
 
 bool determined(const Matrix5& h) noexcept {
   constexpr double kMinRatio = 1e-9;
-  const Eigen::SelfAdjointEigenSolver<Matrix5> solver(scaled(h), Eigen::EigenvaluesOnly);
-  return h.diagonal().minCoeff() > 0.0 && solver.eigenvalues()(0) > kMinRatio;
+  return h.diagonal().minCoeff() > 0.0 && eigen_of_symmetric<5>(scaled(h)).values(0) > kMinRatio;
 }
 
 void apply(const Vector5& step, const Eigen::Vector3d& pivot, CylinderFit& fit) noexcept {
@@ -119,7 +120,7 @@ Matrix5 covariance(const NormalEquations& sums, const SurfaceFitConfig& config) 
   const double n = static_cast<double>(sums.inliers);
   const double slope = std::max(sums.psi_slopes / n, 0.1);
   const double variance = sums.psi_squares / std::max(n - 5.0, 1.0) / (slope * slope);
-  return sums.h.llt().solve(Matrix5::Identity()) * (sums.weight / n) * variance *
+  return inverse_of_symmetric<5>(sums.h) * (sums.weight / n) * variance *
          std::max(1.0, config.points_per_independent_error);
 }
 

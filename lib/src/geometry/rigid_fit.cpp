@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dseam/geometry/symmetric_matrix.hpp"
+
 namespace dseam::geometry {
 namespace {
 
@@ -59,7 +61,7 @@ void set_errors(std::span<const PointPair> pairs, RigidFit& fit) noexcept {
     squares += (p.a - fit.T_a_b * p.b).squaredNorm();
     count += 1.0;
   }
-  fit.covariance = h.ldlt().solve(Matrix6::Identity());
+  fit.covariance = inverse_of_symmetric<6>(h);
   fit.rms_mm = std::sqrt(squares / count);
 }
 

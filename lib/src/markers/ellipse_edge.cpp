@@ -3,11 +3,13 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
+
+#include "dseam/geometry/symmetric_matrix.hpp"
 
 namespace dseam::markers {
 namespace {
@@ -143,9 +145,9 @@ std::optional<geometry::Ellipse> to_ellipse(const Conic& q,
   }
   const Eigen::Vector2d centre = -0.5 * m.inverse() * q.tail<2>();
   const double scale = 1.0 + centre.dot(m * centre);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(m);
-  const Eigen::Vector2d axes = (scale / solver.eigenvalues().array()).sqrt();
-  const Eigen::Vector2d direction = solver.eigenvectors().col(0);
+  const auto eigen = geometry::eigen_of_symmetric<2>(m);
+  const Eigen::Vector2d axes = (scale / eigen.values.array()).sqrt();
+  const Eigen::Vector2d direction = eigen.vectors.col(0);
   return geometry::Ellipse{frame.u + frame.a * centre.x(), frame.v + frame.a * centre.y(),
                            frame.a * axes(0), frame.a * axes(1),
                            std::atan2(direction.y(), direction.x())};

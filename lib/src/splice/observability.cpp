@@ -2,8 +2,9 @@
 #include "dseam/splice/observability.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+
+#include "dseam/geometry/symmetric_matrix.hpp"
 
 namespace dseam::splice {
 namespace {
@@ -25,9 +26,9 @@ Observability find_frozen(const Matrix6& h, double sum_weight, double reach_mm,
   out.reach_mm = reach_mm;
   const Vector6 s = scale_of(reach_mm);
   const Matrix6 scaled = s.asDiagonal() * h * s.asDiagonal() / std::max(sum_weight, 1e-300);
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled);
-  out.directions = solver.eigenvectors();
-  out.sensitivity = solver.eigenvalues();
+  const auto eigen = geometry::eigen_of_symmetric<6>(scaled);
+  out.directions = eigen.vectors;
+  out.sensitivity = eigen.values;
   for (Eigen::Index i = 0; i < 6; ++i) {
     out.num_frozen += out.sensitivity(i) < min_sensitivity ? 1U : 0U;
   }
@@ -48,7 +49,7 @@ Matrix6 Observability::invert(const Matrix6& h, double frozen_variance) const no
   reduced.topRows(frozen).setZero();
   reduced.leftCols(frozen).setZero();
   reduced.diagonal().head(frozen).setOnes();
-  Matrix6 inverse = reduced.ldlt().solve(Matrix6::Identity());
+  Matrix6 inverse = geometry::inverse_of_symmetric<6>(reduced);
   inverse.diagonal().head(frozen).setConstant(frozen_variance);
   return basis * inverse * basis.transpose();
 }

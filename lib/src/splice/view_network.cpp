@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dseam/splice/view_network.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "dseam/geometry/symmetric_matrix.hpp"
 #include "splice/network_adjustment.hpp"
 
 namespace dseam::splice {
@@ -65,9 +65,9 @@ void Adjustment::fill_covariances() noexcept {
     constexpr double kReachMm = 100.0;
     Vector6 scale;
     scale << 1.0, 1.0, 1.0, kReachMm, kReachMm, kReachMm;
-    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(
-        Matrix6(scale.asDiagonal() * relative * scale.asDiagonal()), Eigen::EigenvaluesOnly);
-    const double largest = std::sqrt(std::max(0.0, solver.eigenvalues()(5)));
+    const auto spread =
+        geometry::eigen_of_symmetric<6>(scale.asDiagonal() * relative * scale.asDiagonal());
+    const double largest = std::sqrt(std::max(0.0, spread.values(5)));
     out[v].state = largest > config.max_sigma_mm ? ViewState::kUnobservable : ViewState::kUsed;
     out[v].covariance = to_origin * relative * to_origin.transpose();
   }

@@ -107,7 +107,7 @@ class CellTree {
     visit(start);
     std::uint32_t child = start;
     for (std::size_t level = 0; level < num_levels_; ++level) {
-      const std::uint32_t node = child / kLanes;
+      const auto node = static_cast<std::uint32_t>(child / kLanes);
       const std::uint32_t others = near_children(level, node, box, reach());
       descend(level, node, others & ~(1U << (child % kLanes)), box, reach, visit);
       child = node;
