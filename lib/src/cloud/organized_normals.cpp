@@ -66,6 +66,19 @@ PlaneFit fit(const WindowSums& s) noexcept {
   return {a, b, mw - a * mu - b * mv, determinant, rest, cuu, cvv};
 }
 
+// On the plane 1/z is n dot (ray x, ray y, 1): this n points away from the camera.
+geometry::Vec3Lanes away_from_camera(const PlaneFit& plane, const FloatLanes& inverse_z,
+                                     const depth::Intrinsics& k, std::uint32_t u,
+                                     std::uint32_t v) noexcept {
+  static constexpr float kSteps[kLanes] = {0, 1, 2, 3, 4, 5, 6, 7};
+  const FloatLanes off_u =
+      lanes::load(kSteps) + splat(static_cast<float>(static_cast<double>(u) - k.cx));
+  const FloatLanes off_v = splat(static_cast<float>(static_cast<double>(v) - k.cy));
+  return {plane.slope_u * splat(static_cast<float>(k.fx)),
+          plane.slope_v * splat(static_cast<float>(k.fy)),
+          inverse_z + plane.at_centre - plane.slope_u * off_u - plane.slope_v * off_v};
+}
+
 bool is_in(const depth::DepthImage& image, std::uint32_t u, std::uint32_t v) noexcept {
   return depth::has_sensible_shape(image) && u < image.intrinsics.width &&
          v < image.intrinsics.height;
@@ -124,17 +137,10 @@ OrganizedNormals::Eight OrganizedNormals::fit_eight(const depth::DepthImage& ima
     }
   }
   const PlaneFit plane = fit(sums);
-  static constexpr float kSteps[kLanes] = {0, 1, 2, 3, 4, 5, 6, 7};
-  const FloatLanes off_u =
-      lanes::load(kSteps) + splat(static_cast<float>(static_cast<double>(u) - k.cx));
-  const FloatLanes off_v = splat(static_cast<float>(static_cast<double>(v) - k.cy));
   const auto fx = static_cast<float>(k.fx);
   const auto fy = static_cast<float>(k.fy);
-  // On the plane 1/z is n dot (ray x, ray y, 1): away from the camera, hence the sign.
   const FloatLanes zero = splat(0.0F);
-  const geometry::Vec3Lanes away{
-      plane.slope_u * splat(fx), plane.slope_v * splat(fy),
-      inverse_z + plane.at_centre - plane.slope_u * off_u - plane.slope_v * off_v};
+  const geometry::Vec3Lanes away = away_from_camera(plane, inverse_z, k, u, v);
   const FloatLanes square = geometry::dot(away, away);
   const geometry::Vec3Lanes normal =
       geometry::scaled(away, (zero - splat(1.0F)) / lanes::sqrt(square));

@@ -65,6 +65,14 @@ struct Icp::Sums {
   [[nodiscard]] double rms_mm() const noexcept {
     return std::sqrt(squares / std::max(weight, 1e-12));
   }
+  void describe(Report& report) const noexcept {
+    constexpr double kFrozenVariance = 1e6;  // A metre: not known.
+    report.error_mm2 = error_mm2();
+    report.rms_mm = rms_mm();
+    const double variance = std::max(report.rms_mm * report.rms_mm, 1e-12);
+    report.covariance =
+        report.observability.invert(geometry::Matrix6(h / variance), kFrozenVariance);
+  }
 };
 
 Icp::Sums Icp::pair_up(const cloud::CloudView& source, const cloud::CloudView& target,
@@ -126,12 +134,7 @@ Icp::Report Icp::run(const cloud::CloudView& source, const cloud::CloudView& tar
                                          std::sqrt(std::max(1.0, sums.reach_squares / sums.paired)),
                                          config_.min_sensitivity);
     }
-    report.error_mm2 = sums.error_mm2();
-    report.rms_mm = sums.rms_mm();
-    constexpr double kFrozenVariance = 1e6;  // A metre: not known.
-    const double variance = std::max(report.rms_mm * report.rms_mm, 1e-12);
-    report.covariance =
-        report.observability.invert(geometry::Matrix6(sums.h / variance), kFrozenVariance);
+    sums.describe(report);
     const double next_gate = std::clamp(5.0 * report.rms_mm, config_.final_gate_mm, gate);
     const bool same_gate = next_gate > 0.9 * gate;
     if (config_.metric == IcpMetric::kPointToPoint && report.error_mm2 < config_.stop_error_mm2) {

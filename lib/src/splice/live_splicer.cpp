@@ -57,6 +57,19 @@ void LiveSplicer::tie(const PosedView& view, std::span<const PosedView> others,
   }
 }
 
+namespace {
+
+// What the middle of the image shows.
+Eigen::Vector3d pivot_of(const PosedView& view) noexcept {
+  constexpr double kUsualDistanceMm = 600.0;
+  const depth::Intrinsics& k = view.field.intrinsics;
+  const SurfacePoint middle = surface_at(view.field, k.cx, k.cy);
+  return view.T_base_camera *
+         (middle.valid ? middle.p_camera : Eigen::Vector3d(0.0, 0.0, kUsualDistanceMm));
+}
+
+}  // namespace
+
 LiveSplicer::Report LiveSplicer::run(const PosedView& start,
                                      std::span<const PosedView> others) const noexcept {
   Report report;
@@ -66,12 +79,7 @@ LiveSplicer::Report LiveSplicer::run(const PosedView& start,
     return report;
   }
   PosedView view = start;
-  const depth::Intrinsics& k = view.field.intrinsics;
-  const SurfacePoint middle = surface_at(view.field, k.cx, k.cy);
-  constexpr double kUsualDistanceMm = 600.0;
-  const Eigen::Vector3d pivot =
-      start.T_base_camera *
-      (middle.valid ? middle.p_camera : Eigen::Vector3d(0.0, 0.0, kUsualDistanceMm));
+  const Eigen::Vector3d pivot = pivot_of(start);
   double gate = config_.start_gate_mm;
   for (report.iterations = 1; report.iterations <= config_.max_iterations; ++report.iterations) {
     Sums sums;
