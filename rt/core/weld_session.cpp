@@ -111,27 +111,7 @@ Result<> WeldSession::apply(SessionEvent event) noexcept {
 }
 
 void WeldSession::act(SessionAction action) noexcept {
-  Result<> done;
   switch (action) {
-    case SessionAction::kBeginArming:
-      session_used_ = true;
-      enable_edge_ = false;
-      arc_ready_ = true;
-      done = link_.arm(now_ns_);
-      break;
-    case SessionAction::kBeginLoading:
-      trajectory_ = static_cast<std::uint16_t>(trajectory_ % 65'535U + 1U);  // Never 0.
-      done = link_.load(points_, trajectory_, now_ns_);
-      break;
-    case SessionAction::kBeginRunning:
-      tracker_.begin(points_, now_ns_);
-      done = link_.start(now_ns_);
-      break;
-    case SessionAction::kBeginHold:
-      permit(false);
-      arc_ready_ = false;
-      done = link_.hold(now_ns_);
-      break;
     case SessionAction::kBeginStop:
       permit(false);
       if (!link_.stop(now_ns_).ok()) {
@@ -150,10 +130,32 @@ void WeldSession::act(SessionAction action) noexcept {
       enable_edge_ = false;
       break;
     default:
+      if (!begin(action).ok()) {
+        trip(Fault::kLinkLost);  // The link contradicts what it said a moment ago.
+      }
       break;
   }
-  if (!done.ok()) {
-    trip(Fault::kLinkLost);  // The link contradicts what it said a moment ago.
+}
+
+Result<> WeldSession::begin(SessionAction action) noexcept {
+  switch (action) {
+    case SessionAction::kBeginArming:
+      session_used_ = true;
+      enable_edge_ = false;
+      arc_ready_ = true;
+      return link_.arm(now_ns_);
+    case SessionAction::kBeginLoading:
+      trajectory_ = static_cast<std::uint16_t>(trajectory_ % 65'535U + 1U);  // Never 0.
+      return link_.load(points_, trajectory_, now_ns_);
+    case SessionAction::kBeginRunning:
+      tracker_.begin(points_, now_ns_);
+      return link_.start(now_ns_);
+    case SessionAction::kBeginHold:
+      permit(false);
+      arc_ready_ = false;
+      return link_.hold(now_ns_);
+    default:
+      return {};
   }
 }
 

@@ -16,11 +16,7 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-/// Both run over the same cells, so that each stage is compared by itself.
-void compare(const char *name, const test::OwnedCloud &cloud, float cell_mm, float radius_mm) {
-  CoreChain core(cloud, cell_mm, radius_mm);
-  core.crop();
-  core.clean();
+void compare_outliers(const char *name, const test::OwnedCloud &cloud, const CoreChain &core) {
   PclPeer pcl(cloud.x, cloud.y, cloud.z);
   pcl.passthrough(kLowZ, kHighZ);
   pcl.use_cropped();
@@ -36,8 +32,9 @@ void compare(const char *name, const test::OwnedCloud &cloud, float cell_mm, flo
       1.0 - static_cast<double>(kept_by_one) / static_cast<double>(core.cropped.size());
   std::printf("%s: outliers kept alike %.4f %% (%zu, %zu)\n", name, 100.0 * alike, core.kept.size(),
               theirs.size());
+}
 
-  // From here on both get the core's cells.
+void compare_cells(const char *name, const CoreChain &core, float cell_mm) {
   PclPeer cells(core.cleaned.view().x, core.cleaned.view().y, core.cleaned.view().z);
   cells.downsample(cell_mm);
   std::vector<std::array<float, 3>> a;
@@ -69,7 +66,9 @@ void compare(const char *name, const test::OwnedCloud &cloud, float cell_mm, flo
   }
   std::printf("%s: cells %zu and %zu, centroids differ by at most %.6f mm\n", name, a.size(),
               b.size(), static_cast<double>(worst));
+}
 
+void compare_normals(const char *name, const CoreChain &core, float radius_mm) {
   const cloud::CloudView view = core.cells.view();
   PclPeer peer(view.x, view.y, view.z);
   peer.estimate_normals(radius_mm);
@@ -97,6 +96,16 @@ void compare(const char *name, const test::OwnedCloud &cloud, float cell_mm, flo
       "flags alike %.4f %%\n",
       name, good, off, worst_deg,
       100.0 * static_cast<double>(flags_alike) / static_cast<double>(good));
+}
+
+/// Both run over the same cells, so that each stage is compared by itself.
+void compare(const char *name, const test::OwnedCloud &cloud, float cell_mm, float radius_mm) {
+  CoreChain core(cloud, cell_mm, radius_mm);
+  core.crop();  // Its list was written over by the later stages.
+  core.clean();
+  compare_outliers(name, cloud, core);
+  compare_cells(name, core, cell_mm);
+  compare_normals(name, core, radius_mm);
 }
 
 }  // namespace

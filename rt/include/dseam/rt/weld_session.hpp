@@ -84,6 +84,7 @@ class WeldSession {
   [[nodiscard]] bool link_allows(SessionEvent event) const noexcept;
   Result<> apply(SessionEvent event) noexcept;
   void act(SessionAction action) noexcept;
+  Result<> begin(SessionAction action) noexcept;
   void receive() noexcept;
   void watch_operator(bool enable) noexcept;
   [[nodiscard]] Fault supervise() noexcept;
