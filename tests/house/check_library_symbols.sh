@@ -7,7 +7,7 @@ set -euo pipefail
 nm=$1 library=$2
 
 memory='mem(cpy|move|set|cmp)'
-mathematics='(sqrt|floor|ceil|round|trunc|fabs|fmin|fmax|fmod|hypot|cbrt|log|log2|exp|pow|sin|cos|tan|sincos|asin|acos|atan|atan2|lround|copysign|remainder|erf|erfc)f?'
+mathematics='(sqrt|floor|ceil|round|trunc|fabs|fmin|fmax|fmod|hypot|cbrt|log|log1p|log2|exp|expm1|pow|sin|cos|tan|sincos|asin|acos|atan|atan2|lround|copysign|remainder|erf|erfc)f?'
 compiler='__stack_chk_fail|__popcount[sdt]i2|_GLOBAL_OFFSET_TABLE_|__cxa_pure_virtual|_ZTV.*'
 allowed="^(${memory}|${mathematics}|${compiler}|_Z[A-Z]*N[VKRO]*5dseam.*)\$"
 
