@@ -86,7 +86,8 @@ void compare_normals(const char *name, const CoreChain &core, float radius_mm) {
       flags_alike += open == (flags[i] != 0) ? 1U : 0U;
       const geometry::Vec3f theirs_n{normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]};
       const geometry::Vec3f turned = geometry::cross(core.normal_buffer[i], theirs_n);
-      const double deg = std::asin(std::min(1.0F, geometry::norm(turned))) * kDegPerRad;
+      const double deg =
+          std::asin(std::min(1.0, static_cast<double>(geometry::norm(turned)))) * kDegPerRad;
       worst_deg = std::max(worst_deg, deg);
       off += deg > 0.01 ? 1U : 0U;
     }

@@ -30,39 +30,49 @@ Result<NormalEstimation> NormalEstimation::make(const Config& config) noexcept {
   return NormalEstimation(config);
 }
 
-void NormalEstimation::estimate_cell(const search::CellTree& tree, std::uint32_t at,
-                                     NormalsBuffer& out) const noexcept {
-  const search::Cell& own = tree.cells()[at];
-  const search::QueryCell query(own);
-  const float squared_radius = config_.radius_mm * config_.radius_mm;
-  const FloatLanes limit = splat(squared_radius);
-  CovarianceLanes moments;
-  const auto reach = [squared_radius]() noexcept { return search::Reach{squared_radius}; };
-  tree.visit_around(at, tree.box_of(at), reach, [&](std::uint32_t other) noexcept {
-    if (query.bits_within(tree.box_of(other), limit) != 0) {
-      moments.add(query, tree.cells()[other], limit);
-    }
-  });
-  const geometry::LeastAxisLanes fit = geometry::least_axis(moments.covariance());
-  const FloatLanes width = splat(config_.min_width_ratio * config_.min_width_ratio);
-  const FloatLanes few = splat(static_cast<float>(std::max(config_.min_neighbours, 3U)));
-  const std::uint32_t too_few = lanes::bits(moments.count() < few);
-  const std::uint32_t flat = lanes::bits(fit.most * width < fit.middle);
-  const std::uint32_t clear =
-      lanes::bits(splat(config_.min_gap_ratio) * fit.middle < fit.middle - fit.least);
-  const FloatLanes sum = fit.least + fit.middle + fit.most;
-  const FloatLanes variation = lanes::max(fit.least, splat(0.0F)) / sum;
-  for (std::size_t i = 0; i < kLanes && own.index[i] != search::kNoPoint; ++i) {
-    const NormalState state = (too_few >> i & 1U) != 0 ? NormalState::kTooFew
-                              : (flat >> i & 1U) == 0  ? NormalState::kCollinear
-                              : (clear >> i & 1U) == 0 ? NormalState::kAmbiguous
-                                                       : NormalState::kGood;
-    const bool is_good = state == NormalState::kGood;
-    const geometry::Vec3f axis{fit.axis.x[i], fit.axis.y[i], fit.axis.z[i]};
-    out.set(own.index[i], is_good ? axis : geometry::Vec3f{}, sum[i] > 0.0F ? variation[i] : 0.0F,
-            state);
+// The normals of the eight points of a cell.
+class NormalEstimation::OfCell {
+ public:
+  OfCell(const Config& config, const search::CellTree& tree, NormalsBuffer& out) noexcept
+      : config_(config),
+        tree_(tree),
+        out_(out),
+        squared_radius_(splat(config.radius_mm * config.radius_mm)) {}
+
+  void start(std::uint32_t) noexcept { moments_ = CovarianceLanes(); }
+  void add(const search::QueryCell& query, const search::NearView& points) noexcept {
+    moments_.add(query, points, squared_radius_);
   }
-}
+  void finish(std::uint32_t at) noexcept {
+    const search::Cell& own = tree_.cells()[at];
+    const geometry::LeastAxisLanes fit = geometry::least_axis(moments_.covariance());
+    const FloatLanes width = splat(config_.min_width_ratio * config_.min_width_ratio);
+    const FloatLanes few = splat(static_cast<float>(std::max(config_.min_neighbours, 3U)));
+    const std::uint32_t too_few = lanes::bits(moments_.count() < few);
+    const std::uint32_t flat = lanes::bits(fit.most * width < fit.middle);
+    const std::uint32_t clear =
+        lanes::bits(splat(config_.min_gap_ratio) * fit.middle < fit.middle - fit.least);
+    const FloatLanes sum = fit.least + fit.middle + fit.most;
+    const FloatLanes variation = lanes::max(fit.least, splat(0.0F)) / sum;
+    for (std::size_t i = 0; i < kLanes && own.index[i] != search::kNoPoint; ++i) {
+      const NormalState state = (too_few >> i & 1U) != 0 ? NormalState::kTooFew
+                                : (flat >> i & 1U) == 0  ? NormalState::kCollinear
+                                : (clear >> i & 1U) == 0 ? NormalState::kAmbiguous
+                                                         : NormalState::kGood;
+      const bool is_good = state == NormalState::kGood;
+      const geometry::Vec3f axis{fit.axis.x[i], fit.axis.y[i], fit.axis.z[i]};
+      out_.set(own.index[i], is_good ? axis : geometry::Vec3f{},
+               sum[i] > 0.0F ? variation[i] : 0.0F, state);
+    }
+  }
+
+ private:
+  const Config& config_;
+  const search::CellTree& tree_;
+  NormalsBuffer& out_;
+  FloatLanes squared_radius_;
+  CovarianceLanes moments_;
+};
 
 NormalEstimation::Report NormalEstimation::run(const search::GridIndex& index,
                                                const FusedCloudView& cloud,
@@ -74,9 +84,8 @@ NormalEstimation::Report NormalEstimation::run(const search::GridIndex& index,
       out.set(i, {}, 0.0F, NormalState::kTooFew);
     }
   }
-  for (std::uint32_t at = 0; at < index.tree().cells().size(); ++at) {
-    estimate_cell(index.tree(), at, out);
-  }
+  OfCell of_cell(config_, index.tree(), out);
+  index.for_each_cell(config_.radius_mm, of_cell);
   std::array<std::uint32_t, 4> count{};
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     ++count[static_cast<std::size_t>(out.state[i])];

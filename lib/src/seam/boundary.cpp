@@ -4,15 +4,18 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
+#include "../geometry/vec3_lanes.hpp"
 #include "dseam/base/expects.hpp"
-#include "dseam/search/query_cell.hpp"
+#include "dseam/base/lane_packer.hpp"
 #include "turn.hpp"
 
 namespace dseam::seam {
 namespace {
 
 using geometry::Vec3f;
+using geometry::Vec3Lanes;
 using lanes::FloatLanes;
 using lanes::kLanes;
 using lanes::splat;
@@ -25,10 +28,6 @@ constexpr float kLastSector = static_cast<float>(BoundaryTest::kSectors - 1);
 constexpr float kSquaredSteepness = 1.0e-8F;
 
 bool is_positive(float value) noexcept { return value > 0.0F && std::isfinite(value); }
-
-Vec3f point_of(const Cell& cell, std::size_t lane) noexcept {
-  return {cell.x[lane], cell.y[lane], cell.z[lane]};
-}
 
 /// Where the surface is open.
 struct Gap {
@@ -43,16 +42,16 @@ Gap largest_gap(std::uint64_t hit, const float* least, const float* greatest) no
   }
   const auto last = static_cast<std::size_t>(63 - std::countl_zero(hit));
   float from = greatest[last] - kFullTurn;
-  Gap gap{0.0F, 0.0F};
+  float size_rad = 0.0F;
+  float start_rad = 0.0F;
   for (; hit != 0; hit &= hit - 1) {
     const auto sector = static_cast<std::size_t>(std::countr_zero(hit));
     const float size = least[sector] - from;
-    if (size > gap.size_rad) {
-      gap = {size, from + 0.5F * size};
-    }
+    start_rad = size > size_rad ? from : start_rad;
+    size_rad = size > size_rad ? size : size_rad;
     from = greatest[sector];
   }
-  return gap;
+  return {size_rad, size_rad > 0.0F ? start_rad + 0.5F * size_rad : 0.0F};
 }
 
 }  // namespace
@@ -61,7 +60,7 @@ Result<BoundaryTest> BoundaryTest::make(const Config& config, Arena& arena) noex
   if (!is_positive(config.radius_mm) || !is_positive(config.min_gap_rad)) {
     return Errc::kInvalidArgument;
   }
-  BoundaryTest stage(config, arena.take<Sectors>(kLanes));
+  BoundaryTest stage(config, arena.take<Sectors>(kLanes), arena.take<Directions>(1));
   if (arena.exhausted()) {
     return Errc::kOutOfMemory;
   }
@@ -71,6 +70,8 @@ Result<BoundaryTest> BoundaryTest::make(const Config& config, Arena& arena) noex
 void BoundaryTest::Sectors::start(Vec3f its_point, Vec3f normal) noexcept {
   hit = 0;
   count = 0;
+  std::fill_n(least, kSectors, std::numeric_limits<float>::max());
+  std::fill_n(greatest, kSectors, -1.0F);
   point = its_point;
   // Without the smaller of x and y the vector across cannot vanish.
   const Vec3f across = std::fabs(normal.x) < std::fabs(normal.y) ? Vec3f{0.0F, normal.z, -normal.y}
@@ -79,54 +80,95 @@ void BoundaryTest::Sectors::start(Vec3f its_point, Vec3f normal) noexcept {
   u = geometry::cross(normal, v);
 }
 
-void BoundaryTest::Sectors::add(const Cell& cell, float squared_radius) noexcept {
-  const FloatLanes dx = lanes::load(cell.x) - splat(point.x);
-  const FloatLanes dy = lanes::load(cell.y) - splat(point.y);
-  const FloatLanes dz = lanes::load(cell.z) - splat(point.z);
-  const FloatLanes squared = dx * dx + dy * dy + dz * dz;
-  const lanes::IntLanes near = squared <= splat(squared_radius);
-  const FloatLanes a = dx * splat(u.x) + dy * splat(u.y) + dz * splat(u.z);
-  const FloatLanes b = dx * splat(v.x) + dy * splat(v.y) + dz * splat(v.z);
-  const FloatLanes sum = lanes::magnitude(a) + lanes::magnitude(b);
-  const lanes::IntLanes has_angle = near & (squared * splat(kSquaredSteepness) < sum * sum);
-  const FloatLanes turn = lanes::keep(has_angle, turn_of(a, b, sum));
-  alignas(32) float turns[kLanes];
-  alignas(32) std::int32_t sectors[kLanes];
-  store(turn, turns);
-  store(lanes::to_int(lanes::min(turn * splat(kSectorsPerRad), splat(kLastSector))), sectors);
-  count += static_cast<std::uint32_t>(std::popcount(lanes::bits(near)));
-  for (std::uint32_t left = lanes::bits(has_angle); left != 0; left &= left - 1) {
-    const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-    const auto sector = static_cast<std::size_t>(sectors[lane]);
-    const bool is_new = (hit >> sector & 1U) == 0;
-    least[sector] = is_new ? turns[lane] : std::min(least[sector], turns[lane]);
-    greatest[sector] = is_new ? turns[lane] : std::max(greatest[sector], turns[lane]);
+void BoundaryTest::Sectors::project(const search::NearView& points, float squared_radius,
+                                    Directions& directions) noexcept {
+  const Vec3Lanes at{splat(point.x), splat(point.y), splat(point.z)};
+  const Vec3Lanes along_u{splat(u.x), splat(u.y), splat(u.z)};
+  const Vec3Lanes along_v{splat(v.x), splat(v.y), splat(v.z)};
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < points.count; i += kLanes) {
+    const search::EightPoints p = search::EightPoints::of(points, i);
+    const Vec3Lanes d{p.x - at.x, p.y - at.y, p.z - at.z};
+    const FloatLanes squared = dot(d, d);
+    const lanes::IntLanes near = squared <= splat(squared_radius);
+    const FloatLanes a = dot(d, along_u);
+    const FloatLanes b = dot(d, along_v);
+    const FloatLanes sum = lanes::magnitude(a) + lanes::magnitude(b);
+    const lanes::IntLanes has_angle = near & (squared * splat(kSquaredSteepness) < sum * sum);
+    count += static_cast<std::uint32_t>(std::popcount(lanes::bits(near)));
+    const std::uint32_t chosen = lanes::bits(has_angle);
+    const lanes::LanePacker packer(chosen);
+    packer.store(a, directions.a + kept);
+    packer.store(b, directions.b + kept);
+    kept += static_cast<std::size_t>(std::popcount(chosen));
+  }
+  directions.count = kept;
+  lanes::store(splat(1.0F), directions.a + kept);  // What follows has an angle too, of no meaning.
+  lanes::store(splat(0.0F), directions.b + kept);
+}
+
+void BoundaryTest::Sectors::add(const search::NearView& points, float squared_radius,
+                                Directions& directions) noexcept {
+  project(points, squared_radius, directions);
+  float* const turns = directions.a;
+  for (std::size_t i = 0; i < directions.count; i += kLanes) {
+    const FloatLanes a = lanes::load(directions.a + i);
+    const FloatLanes b = lanes::load(directions.b + i);
+    const FloatLanes turn = turn_of(a, b, lanes::magnitude(a) + lanes::magnitude(b));
+    lanes::store(turn, turns + i);
+    lanes::store(lanes::to_int(lanes::min(turn * splat(kSectorsPerRad), splat(kLastSector))),
+                 directions.sector + i);
+  }
+  for (std::size_t i = 0; i < directions.count; ++i) {
+    const auto sector = static_cast<std::size_t>(directions.sector[i]);
+    least[sector] = std::min(least[sector], turns[i]);
+    greatest[sector] = std::max(greatest[sector], turns[i]);
     hit |= std::uint64_t{1} << sector;
   }
 }
 
-void BoundaryTest::collect(const search::CellTree& tree, std::uint32_t at,
-                           const cloud::NormalsView& normals) noexcept {
-  const Cell& own = tree.cells()[at];
-  std::uint32_t with_normal = 0;
-  for (std::size_t i = 0; i < kLanes && own.index[i] != search::kNoPoint; ++i) {
-    const std::size_t index = own.index[i];
-    const Vec3f normal{normals.nx[index], normals.ny[index], normals.nz[index]};
-    with_normal |= (normal == Vec3f{} ? 0U : 1U) << i;
-    sectors_[i].start(point_of(own, i), normal);
-  }
-  const search::QueryCell query(own);
-  const float squared_radius = config_.radius_mm * config_.radius_mm;
-  const FloatLanes limit = splat(squared_radius);
-  const auto reach = [squared_radius]() noexcept { return search::Reach{squared_radius}; };
-  tree.visit_around(at, tree.box_of(at), reach, [&](std::uint32_t other) noexcept {
-    std::uint32_t near = query.bits_within(tree.box_of(other), limit) & with_normal;
-    for (; near != 0; near &= near - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(near));
-      sectors_[i].add(tree.cells()[other], squared_radius);
+// The eight points of a cell.
+class BoundaryTest::OfCell {
+ public:
+  OfCell(BoundaryTest& test, const search::CellTree& tree, const cloud::NormalsView& normals,
+         BoundaryBuffer& out, Report& report) noexcept
+      : test_(test), tree_(tree), normals_(normals), out_(out), report_(report) {}
+
+  void start(std::uint32_t at) noexcept {
+    const Cell& own = tree_.cells()[at];
+    with_normal_ = 0;
+    for (std::size_t i = 0; i < kLanes && own.index[i] != search::kNoPoint; ++i) {
+      const Vec3f normal = normal_of(own.index[i]);
+      with_normal_ |= (normal == Vec3f{} ? 0U : 1U) << i;
+      test_.sectors_[i].start({own.x[i], own.y[i], own.z[i]}, normal);
     }
-  });
-}
+  }
+  void add(const search::QueryCell&, const search::NearView& points) noexcept {
+    const float squared_radius = test_.config_.radius_mm * test_.config_.radius_mm;
+    for (std::uint32_t left = with_normal_; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(left));
+      test_.sectors_[i].add(points, squared_radius, test_.directions_[0]);
+    }
+  }
+  void finish(std::uint32_t at) noexcept {
+    const Cell& own = tree_.cells()[at];
+    for (std::size_t i = 0; i < kLanes && own.index[i] != search::kNoPoint; ++i) {
+      test_.judge(own.index[i], normal_of(own.index[i]), test_.sectors_[i], out_, report_);
+    }
+  }
+
+ private:
+  [[nodiscard]] Vec3f normal_of(std::size_t index) const noexcept {
+    return {normals_.nx[index], normals_.ny[index], normals_.nz[index]};
+  }
+
+  BoundaryTest& test_;
+  const search::CellTree& tree_;
+  const cloud::NormalsView& normals_;
+  BoundaryBuffer& out_;
+  Report& report_;
+  std::uint32_t with_normal_ = 0;
+};
 
 void BoundaryTest::judge(std::size_t index, Vec3f normal, const Sectors& sectors,
                          BoundaryBuffer& out, Report& report) const noexcept {
@@ -157,16 +199,8 @@ BoundaryTest::Report BoundaryTest::run(const search::GridIndex& index,
   Report report;
   report.without_normal = static_cast<std::uint32_t>(num_points - index.size());
   std::fill_n(out.gap_rad.begin(), num_points, 0.0F);
-  const search::CellTree& tree = index.tree();
-  for (std::uint32_t at = 0; at < tree.cells().size(); ++at) {
-    collect(tree, at, normals);
-    const Cell& own = tree.cells()[at];
-    for (std::size_t i = 0; i < kLanes && own.index[i] != search::kNoPoint; ++i) {
-      const std::size_t point = own.index[i];
-      judge(point, {normals.nx[point], normals.ny[point], normals.nz[point]}, sectors_[i], out,
-            report);
-    }
-  }
+  OfCell of_cell(*this, index.tree(), normals, out, report);
+  index.for_each_cell(config_.radius_mm, of_cell);
   found.clear();
   for (std::uint32_t i = 0; i < num_points; ++i) {
     const bool open = out.gap_rad[i] > config_.min_gap_rad;

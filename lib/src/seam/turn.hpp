@@ -48,16 +48,10 @@ struct CosineSine {
   const float s = t + t * t2 * (-0.166666502F + t2 * (0.00833195798F + t2 * -0.000194934967F));
   const float c =
       1.0F - 0.5F * t2 + t2 * t2 * (0.0416666462F + t2 * (-0.00138873415F + t2 * 0.0000244358517F));
-  switch (quarter % 4) {
-    case 0:
-      return {c, s};
-    case 1:
-      return {-s, c};
-    case 2:
-      return {-c, -s};
-    default:
-      return {s, -c};
-  }
+  const bool across = quarter % 2 == 1;
+  const float cosine = across ? s : c;
+  const float sine = across ? c : s;
+  return {(quarter + 1) % 4 < 2 ? cosine : -cosine, quarter % 4 < 2 ? sine : -sine};
 }
 
 }  // namespace dseam::seam

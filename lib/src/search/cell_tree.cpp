@@ -90,17 +90,8 @@ Box CellTree::box_of(std::uint32_t cell) const noexcept {
           node.high_x[lane], node.high_y[lane], node.high_z[lane]};
 }
 
-std::uint32_t CellTree::cell_near(const Box& point) const noexcept {
-  std::uint32_t at = 0;
-  for (std::size_t level = num_levels_; level-- > 0;) {
-    const FloatLanes gaps = squared_gaps(node_storage_[level_begin_[level] + at], point);
-    std::size_t best = 0;
-    for (std::size_t lane = 1; lane < kLanes; ++lane) {
-      best = gaps[lane] < gaps[best] ? lane : best;
-    }
-    at = at * static_cast<std::uint32_t>(kLanes) + static_cast<std::uint32_t>(best);
-  }
-  return at;
+Box CellTree::box_of_block(std::uint32_t block) const noexcept {
+  return box_of_node(node_storage_[block]).box;
 }
 
 }  // namespace dseam::search

@@ -8,8 +8,7 @@
 
 #include "dseam/base/expects.hpp"
 #include "dseam/search/grid_index.hpp"
-#include "dseam/search/query_cell.hpp"
-#include "nearest_list.hpp"
+#include "nearest_of_all.hpp"
 
 namespace dseam::search {
 namespace {
@@ -17,68 +16,6 @@ namespace {
 using lanes::splat;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-// The kRoom least squared distances of each lane, in rising order, without a branch.
-template <std::size_t kRoom>
-struct LeastDistances {
-  std::array<FloatLanes, kRoom> least;
-
-  LeastDistances() noexcept { least.fill(splat(kInfinity)); }
-  [[gnu::always_inline]] void insert(FloatLanes squared) noexcept {
-    insert_each(squared, std::make_index_sequence<kRoom>{});
-  }
-
- private:
-  // Written out, so that short lists stay in registers.
-  template <std::size_t... kPlaces>
-  [[gnu::always_inline]] void insert_each(FloatLanes squared,
-                                          std::index_sequence<kPlaces...>) noexcept {
-    (insert_at(least[kPlaces], squared), ...);
-  }
-  [[gnu::always_inline]] static void insert_at(FloatLanes& kept, FloatLanes& squared) noexcept {
-    const FloatLanes nearer = min(kept, squared);
-    squared = max(kept, squared);
-    kept = nearer;
-  }
-};
-
-// A point is no neighbour of its own.
-template <std::size_t kRoom>
-void insert_own(const QueryCell& query, const Cell& own, LeastDistances<kRoom>& best) noexcept {
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    best.insert(select(query.is_lane(i), splat(kInfinity), query.squared_distances(own, i)));
-  }
-}
-
-template <std::size_t kRoom>
-void insert_other(const QueryCell& query, const Cell& cell, LeastDistances<kRoom>& best) noexcept {
-  LeastDistances<kRoom> local = best;
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    local.insert(query.squared_distances(cell, i));
-  }
-  best = local;
-}
-
-// For the eight points of `start`.
-template <std::size_t kRoom>
-void least_distances(const CellTree& tree, std::uint32_t start, std::size_t k,
-                     LeastDistances<kRoom>& best) noexcept {
-  const QueryCell query(tree.cells()[start]);
-  FloatLanes farthest = splat(kInfinity);
-  Reach of_all{kInfinity, 0};
-  const auto reach = [&]() noexcept { return of_all; };
-  tree.visit_around(start, tree.box_of(start), reach, [&](std::uint32_t at) noexcept {
-    if (at == start) {
-      insert_own(query, tree.cells()[at], best);
-    } else if (query.any_nearer(tree.box_of(at), farthest)) {
-      insert_other(query, tree.cells()[at], best);
-    } else {
-      return;
-    }
-    farthest = best.least[k - 1];
-    of_all.squared_mm2 = largest(farthest);
-  });
-}
 
 // As many as there are others, so that no infinite distance enters.
 template <std::size_t kRoom>
@@ -90,17 +27,18 @@ FloatLanes mean_of(const LeastDistances<kRoom>& distances, std::size_t k) noexce
   return sum / splat(static_cast<float>(k));
 }
 
+// Not inlined, so that the frames of the four lengths do not add up.
 template <std::size_t kRoom>
-void mean_distances_of_all(const CellTree& tree, std::size_t k, std::span<float> mean_mm) noexcept {
-  for (std::uint32_t at = 0; at < tree.cells().size(); ++at) {
-    LeastDistances<kRoom> distances;
-    least_distances(tree, at, k, distances);
+[[gnu::noinline]] void mean_distances_of_all(const CellTree& tree, const NearPoints& near,
+                                             std::size_t k, std::span<float> mean_mm) noexcept {
+  NearestOfAll<kRoom> search(tree, near, k);
+  search.run([&](std::uint32_t at, const LeastDistances<kRoom>& distances, bool) noexcept {
     const FloatLanes mean = mean_of(distances, k);
     const Cell& cell = tree.cells()[at];
     for (std::size_t i = 0; i < kLanes && cell.index[i] != kNoPoint; ++i) {
       mean_mm[cell.index[i]] = mean[i];
     }
-  }
+  });
 }
 
 // The rows of one cell. `farthest` is known from the distances alone; now the indices are wanted.
@@ -119,15 +57,13 @@ class Rows {
   void offer(const Cell& other, const Box& box) noexcept {
     std::uint32_t rows = query_.bits_within(box, farthest_) & ((1U << count_) - 1U);
     for (; rows != 0; rows &= rows - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(rows));
-      NearestList& list = lists_[i];
-      const FloatLanes squared = squared_distances(other, cell_.x[i], cell_.y[i], cell_.z[i]);
-      std::uint32_t near = bits(squared <= splat(list.limit().squared_mm2));
-      for (; near != 0; near &= near - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(near));
-        if (other.index[lane] != cell_.index[i]) {
-          list.offer({other.index[lane], squared[lane]});
-        }
+      offer(static_cast<std::size_t>(std::countr_zero(rows)), EightPoints::of(other));
+    }
+  }
+  void offer(const NearView& points) noexcept {
+    for (std::size_t row = 0; row < count_; ++row) {
+      for (std::size_t i = 0; i < points.count; i += kLanes) {
+        offer(row, EightPoints::of(points, i));
       }
     }
   }
@@ -141,6 +77,22 @@ class Rows {
   }
 
  private:
+  void offer(std::size_t row, const EightPoints& points) noexcept {
+    const FloatLanes dx = points.x - splat(cell_.x[row]);
+    const FloatLanes dy = points.y - splat(cell_.y[row]);
+    const FloatLanes dz = points.z - splat(cell_.z[row]);
+    const FloatLanes squared = dx * dx + dy * dy + dz * dz;
+    NearestList& list = lists_[row];
+    std::uint32_t near = bits(squared <= splat(list.limit().squared_mm2));
+    for (; near != 0; near &= near - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(near));
+      const auto index = static_cast<std::uint32_t>(points.index[lane]);
+      if (index != cell_.index[row]) {
+        list.offer({index, squared[lane]});
+      }
+    }
+  }
+
   const Cell& cell_;
   QueryCell query_;
   FloatLanes farthest_;
@@ -149,17 +101,21 @@ class Rows {
 };
 
 template <std::size_t kRoom>
-void rows_of_all(const CellTree& tree, std::size_t k, std::size_t num_others,
-                 std::span<Neighbour> found) noexcept {
-  for (std::uint32_t at = 0; at < tree.cells().size(); ++at) {
-    LeastDistances<kRoom> distances;
-    least_distances(tree, at, std::min(k, num_others), distances);
-    Rows rows(tree.cells()[at], k, distances.least[k - 1], found);
+[[gnu::noinline]] void rows_of_all(const CellTree& tree, const NearPoints& near, std::size_t k,
+                                   std::size_t num_others, std::span<Neighbour> found) noexcept {
+  NearestOfAll<kRoom> search(tree, near, std::min(k, num_others));
+  search.run([&](std::uint32_t at, const LeastDistances<kRoom>& distances, bool covered) noexcept {
+    const FloatLanes& farthest = distances.least[k - 1];
+    Rows rows(tree.cells()[at], k, farthest, found);
+    if (covered) {
+      rows.offer(search.near().all_of(at, tree.box_of(at), largest(farthest)));
+      return;
+    }
     const auto reach = [&]() noexcept { return rows.reach(); };
     tree.visit_around(at, tree.box_of(at), reach, [&](std::uint32_t other) noexcept {
       rows.offer(tree.cells()[other], tree.box_of(other));
     });
-  }
+  });
 }
 
 }  // namespace
@@ -172,13 +128,13 @@ void GridIndex::mean_distances(std::size_t k, std::span<float> mean_mm) const no
       mean_mm[cell.index[0]] = 0.0F;  // A lone point.
     }
   } else if (k <= 5) {
-    mean_distances_of_all<5>(tree_, k, mean_mm);
+    mean_distances_of_all<5>(tree_, near_points(), k, mean_mm);
   } else if (k <= 10) {
-    mean_distances_of_all<10>(tree_, k, mean_mm);
+    mean_distances_of_all<10>(tree_, near_points(), k, mean_mm);
   } else if (k <= 24) {
-    mean_distances_of_all<24>(tree_, k, mean_mm);
+    mean_distances_of_all<24>(tree_, near_points(), k, mean_mm);
   } else {
-    mean_distances_of_all<kMaxBatchNeighbours>(tree_, k, mean_mm);
+    mean_distances_of_all<kMaxBatchNeighbours>(tree_, near_points(), k, mean_mm);
   }
 }
 
@@ -186,13 +142,13 @@ void GridIndex::k_nearest_of_all(std::size_t k, std::span<Neighbour> found) cons
   DSEAM_EXPECTS(k > 0 && k <= kMaxBatchNeighbours);
   const std::size_t num_others = std::max<std::size_t>(size_, 2) - 1;
   if (k <= 5) {
-    rows_of_all<5>(tree_, k, num_others, found);
+    rows_of_all<5>(tree_, near_points(), k, num_others, found);
   } else if (k <= 10) {
-    rows_of_all<10>(tree_, k, num_others, found);
+    rows_of_all<10>(tree_, near_points(), k, num_others, found);
   } else if (k <= 24) {
-    rows_of_all<24>(tree_, k, num_others, found);
+    rows_of_all<24>(tree_, near_points(), k, num_others, found);
   } else {
-    rows_of_all<kMaxBatchNeighbours>(tree_, k, num_others, found);
+    rows_of_all<kMaxBatchNeighbours>(tree_, near_points(), k, num_others, found);
   }
 }
 

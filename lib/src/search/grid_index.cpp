@@ -19,8 +19,6 @@ bool is_in_range(geometry::Vec3f p) noexcept {
          std::fabs(p.z) <= GridIndex::kMaxMm;  // Written so that NaN fails it too.
 }
 
-Box box_at(geometry::Vec3f p) noexcept { return {p.x, p.y, p.z, p.x, p.y, p.z}; }
-
 // Keeps the nearest in a heap while more come than fit, and counts them all.
 class RadiusList {
  public:
@@ -65,7 +63,9 @@ GridIndex::GridIndex(std::size_t max_points, Arena& arena) noexcept
             arena.take<Node>(CellTree::nodes_of(CellTree::cells_of(max_points)))),
       places_(arena.take<CurvePlace>(max_points)),
       spare_(arena.take<CurvePlace>(max_points)),
-      counters_(arena.take<std::uint32_t>(kCurveCounters)) {}
+      counters_(arena.take<std::uint32_t>(kCurveCounters)),
+      near_floats_(arena.take<float>(NearPoints::kFloats)),
+      near_indices_(arena.take<std::uint32_t>(NearPoints::kIndices)) {}
 
 GridIndex::Report GridIndex::rebuild(const cloud::CloudView& cloud) noexcept {
   const Report report = collect(cloud);
@@ -110,7 +110,7 @@ Neighbour GridIndex::nearest(geometry::Vec3f point, float max_mm) const noexcept
     return found;
   }
   NearestList list({&found, 1}, max_mm * max_mm);
-  offer_all(point, list);
+  offer_all(tree_, point, list);
   return found;
 }
 
@@ -119,22 +119,8 @@ std::size_t GridIndex::k_nearest(geometry::Vec3f point, std::span<Neighbour> fou
     return 0;
   }
   NearestList list(found, kInfinity);
-  offer_all(point, list);
+  offer_all(tree_, point, list);
   return list.size();
-}
-
-void GridIndex::offer_all(geometry::Vec3f point, NearestList& list) const noexcept {
-  const Box box = box_at(point);
-  const auto reach = [&]() noexcept { return Reach{list.limit().squared_mm2, list.limit().index}; };
-  tree_.visit_around(tree_.cell_near(box), box, reach, [&](std::uint32_t at) noexcept {
-    const Cell& cell = tree_.cells()[at];
-    const FloatLanes squared = squared_distances(cell, point.x, point.y, point.z);
-    std::uint32_t near = bits(squared <= splat(list.limit().squared_mm2));
-    for (; near != 0; near &= near - 1) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(near));
-      list.offer({cell.index[lane], squared[lane]});
-    }
-  });
 }
 
 std::size_t GridIndex::radius(geometry::Vec3f point, float radius_mm,
@@ -146,7 +132,7 @@ std::size_t GridIndex::radius(geometry::Vec3f point, float radius_mm,
   const float squared_radius = radius_mm * radius_mm;
   RadiusList list(found);
   const auto reach = [squared_radius]() noexcept { return Reach{squared_radius}; };
-  tree_.visit_around(tree_.cell_near(box), box, reach, [&](std::uint32_t at) noexcept {
+  tree_.visit_nearest_first(box, reach, [&](std::uint32_t at) noexcept {
     const Cell& cell = tree_.cells()[at];
     const FloatLanes squared = squared_distances(cell, point.x, point.y, point.z);
     std::uint32_t near = bits(squared <= splat(squared_radius));
@@ -160,63 +146,81 @@ std::size_t GridIndex::radius(geometry::Vec3f point, float radius_mm,
 
 namespace {
 
-// The points of one cell within reach of another point, behind those already found.
+// The points within reach of another, behind those already found.
 class Others {
  public:
-  Others(const Cell& own, std::size_t lane, Reach reach, std::span<Neighbour> found) noexcept
-      : own_(own), lane_(lane), limit_(reach.squared_mm2), found_(found) {}
+  Others(geometry::Vec3f point, std::uint32_t index, float squared_mm2,
+         std::span<Neighbour> found) noexcept
+      : x_(lanes::splat(point.x)),
+        y_(lanes::splat(point.y)),
+        z_(lanes::splat(point.z)),
+        limit_(splat(squared_mm2)),
+        index_(splat(static_cast<std::int32_t>(index))),
+        found_(found) {}
 
-  void add(const Cell& cell) noexcept {
-    const FloatLanes squared = squared_distances(cell, own_.x[lane_], own_.y[lane_], own_.z[lane_]);
-    std::uint32_t near = bits(squared <= splat(limit_));
-    near &= &cell == &own_ ? ~(1U << lane_) : ~0U;
-    for (; near != 0; near &= near - 1, ++count_) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(near));
-      if (count_ < found_.size()) {
-        found_[count_] = {cell.index[i], squared[i]};
+  void add(const EightPoints& points) noexcept {
+    const FloatLanes dx = points.x - x_;
+    const FloatLanes dy = points.y - y_;
+    const FloatLanes dz = points.z - z_;
+    const FloatLanes squared = dx * dx + dy * dy + dz * dz;
+    const std::uint32_t near = bits(squared <= limit_) & ~bits(points.index == index_);
+    const auto more = static_cast<std::size_t>(std::popcount(near));
+    if (count_ + kLanes <= found_.size()) {
+      const lanes::LanePacker packer(near);
+      float distances[kLanes];
+      std::uint32_t indices[kLanes];
+      packer.store(squared, distances);
+      packer.store(points.index, indices);
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        found_[count_ + i] = {indices[i], distances[i]};
       }
+    } else {
+      add_some(points, squared, near);
     }
+    count_ += more;
   }
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
 
  private:
-  const Cell& own_;
-  std::size_t lane_;
-  float limit_;
+  // Where not all eight would fit.
+  void add_some(const EightPoints& points, const FloatLanes& squared, std::uint32_t near) noexcept {
+    for (std::size_t at = count_; near != 0 && at < found_.size(); near &= near - 1, ++at) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(near));
+      found_[at] = {static_cast<std::uint32_t>(points.index[i]), squared[i]};
+    }
+  }
+
+  FloatLanes x_, y_, z_, limit_;
+  IntLanes index_;
   std::span<Neighbour> found_;
   std::size_t count_ = 0;
 };
 
-}  // namespace
-
-GridIndex::NearCells GridIndex::cells_near(std::uint32_t at, Reach reach) const noexcept {
-  NearCells near;
-  const auto reach_of = [reach]() noexcept { return reach; };
-  tree_.visit_around(at, tree_.box_of(at), reach_of, [&](std::uint32_t other) noexcept {
-    near.all_fit = near.count < near.cells.size();
-    if (near.all_fit) {
-      near.cells[near.count++] = other;
-    }
-  });
-  return near;
+geometry::Vec3f point_of(const Cell& cell, std::size_t lane) noexcept {
+  return {cell.x[lane], cell.y[lane], cell.z[lane]};
 }
 
-std::size_t GridIndex::others_in(const NearCells& near, std::uint32_t at, std::size_t lane,
-                                 Reach reach, std::span<Neighbour> found) const noexcept {
-  Others others(tree_.cells()[at], lane, reach, found);
-  for (std::size_t i = 0; i < near.count; ++i) {
-    others.add(tree_.cells()[near.cells[i]]);
+}  // namespace
+
+std::size_t GridIndex::others_in(const NearView& near, std::uint32_t at, std::size_t lane,
+                                 float squared_mm2, std::span<Neighbour> found) const noexcept {
+  const Cell& own = tree_.cells()[at];
+  Others others(point_of(own, lane), own.index[lane], squared_mm2, found);
+  for (std::size_t i = 0; i < near.count; i += kLanes) {
+    others.add(EightPoints::of(near, i));
   }
   return others.count();
 }
 
-std::size_t GridIndex::others_within(std::uint32_t at, std::size_t lane, Reach reach,
+std::size_t GridIndex::others_within(std::uint32_t at, std::size_t lane, float squared_mm2,
                                      std::span<Neighbour> found) const noexcept {
   const Cell& own = tree_.cells()[at];
-  Others others(own, lane, reach, found);
-  const auto reach_of = [reach]() noexcept { return reach; };
-  tree_.visit_around(at, box_at({own.x[lane], own.y[lane], own.z[lane]}), reach_of,
-                     [&](std::uint32_t other) noexcept { others.add(tree_.cells()[other]); });
+  const geometry::Vec3f point = point_of(own, lane);
+  Others others(point, own.index[lane], squared_mm2, found);
+  const auto reach = [squared_mm2]() noexcept { return Reach{squared_mm2}; };
+  tree_.visit_around(at, box_at(point), reach, [&](std::uint32_t other) noexcept {
+    others.add(EightPoints::of(tree_.cells()[other]));
+  });
   return others.count();
 }
 

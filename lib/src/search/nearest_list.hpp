@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -35,6 +36,18 @@ class NearestList {
     }
   }
 
+  void offer(const EightPoints& points, geometry::Vec3f to) noexcept {
+    const FloatLanes dx = points.x - lanes::splat(to.x);
+    const FloatLanes dy = points.y - lanes::splat(to.y);
+    const FloatLanes dz = points.z - lanes::splat(to.z);
+    const FloatLanes squared = dx * dx + dy * dy + dz * dz;
+    std::uint32_t near = bits(squared <= lanes::splat(limit_.squared_mm2));
+    for (; near != 0; near &= near - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(near));
+      offer({static_cast<std::uint32_t>(points.index[lane]), squared[lane]});
+    }
+  }
+
   /// Only what is before this is taken.
   [[nodiscard]] const Neighbour& limit() const noexcept { return limit_; }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
@@ -52,6 +65,19 @@ class NearestList {
   const FloatLanes dy = lanes::load(cell.y) - lanes::splat(y);
   const FloatLanes dz = lanes::load(cell.z) - lanes::splat(z);
   return dx * dx + dy * dy + dz * dz;
+}
+
+[[nodiscard]] inline Box box_at(geometry::Vec3f p) noexcept {
+  return {p.x, p.y, p.z, p.x, p.y, p.z};
+}
+
+/// Offers every point that the list may take.
+inline void offer_all(const CellTree& tree, geometry::Vec3f point, NearestList& list) noexcept {
+  const Box box = box_at(point);
+  const auto reach = [&]() noexcept { return Reach{list.limit().squared_mm2, list.limit().index}; };
+  tree.visit_nearest_first(box, reach, [&](std::uint32_t at) noexcept {
+    list.offer(EightPoints::of(tree.cells()[at]), point);
+  });
 }
 
 }  // namespace dseam::search

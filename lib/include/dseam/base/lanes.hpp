@@ -74,12 +74,21 @@ DSEAM_LANES_OPERATOR(IntLanes, IntLanes, <)
 DSEAM_LANES_OPERATOR(IntLanes, IntLanes, ==)
 #undef DSEAM_LANES_OPERATOR
 
+/// The same part anywhere in memory. By memcpy, some compilers would go through the stack.
+template <typename Part>
+struct InMemory {
+  typedef Part Anywhere __attribute__((aligned(4), may_alias));
+};
 template <typename T, typename E>
 [[gnu::always_inline, nodiscard]] inline T load_lanes(const E* from) noexcept {
-  T lanes;
-  static_assert(sizeof lanes == kLanes * sizeof *from);
-  std::memcpy(&lanes, from, sizeof lanes);
-  return lanes;
+  using Part = decltype(T::low);
+  static_assert(sizeof(T) == kLanes * sizeof *from);
+  const auto* parts = reinterpret_cast<const typename InMemory<Part>::Anywhere*>(from);
+#if defined(__AVX__)
+  return {*parts};
+#else
+  return {parts[0], parts[1]};
+#endif
 }
 [[gnu::always_inline, nodiscard]] inline FloatLanes load(const float* from) noexcept {
   return load_lanes<FloatLanes>(from);
@@ -90,7 +99,11 @@ template <typename T, typename E>
 template <typename Part, typename E>
 [[gnu::always_inline]] inline void store(const Lanes<Part>& lanes, E* to) noexcept {
   static_assert(sizeof lanes == kLanes * sizeof *to);
-  std::memcpy(to, &lanes, sizeof lanes);
+  auto* parts = reinterpret_cast<typename InMemory<Part>::Anywhere*>(to);
+  parts[0] = lanes.low;
+#if !defined(__AVX__)
+  parts[1] = lanes.high;
+#endif
 }
 [[gnu::always_inline, nodiscard]] inline FloatLanes splat(float value) noexcept {
   return FloatLanes::each([value](auto zero) { return value - zero; }, FloatLanes{});
@@ -155,12 +168,18 @@ template <int kShift>
   return kept;
 }
 [[gnu::always_inline, nodiscard]] inline FloatLanes sqrt(const FloatLanes& a) noexcept {
+#if defined(__AVX__)
+  return {__builtin_ia32_sqrtps256(a.low)};
+#elif defined(__SSE2__)
+  return {__builtin_ia32_sqrtps(a.low), __builtin_ia32_sqrtps(a.high)};
+#else
   float each[kLanes];
   store(a, each);
   for (float& value : each) {
     value = __builtin_sqrtf(value);
   }
   return load(each);
+#endif
 }
 /// Bit i is set where lane i of the mask is.
 [[gnu::always_inline, nodiscard]] inline std::uint32_t bits(const IntLanes& mask) noexcept {
@@ -190,6 +209,15 @@ template <int kShift>
   const float even = most[0] > most[2] ? most[0] : most[2];
   const float odd = most[1] > most[3] ? most[1] : most[3];
   return even > odd ? even : odd;
+}
+
+[[gnu::always_inline, nodiscard]] inline float least(const FloatLanes& a) noexcept {
+  return -largest(splat(0.0F) - a);
+}
+/// A mask with lane `i` alone.
+[[gnu::always_inline, nodiscard]] inline IntLanes is_lane(std::size_t i) noexcept {
+  constexpr std::int32_t kNumbers[kLanes] = {0, 1, 2, 3, 4, 5, 6, 7};
+  return load(kNumbers) == splat(static_cast<std::int32_t>(i));
 }
 
 }  // namespace dseam::lanes

@@ -47,9 +47,8 @@ class NormalEstimation {
              std::span<const geometry::Vec3f> sensors, NormalsBuffer& out) const noexcept;
 
  private:
+  class OfCell;
   explicit NormalEstimation(const Config& config) noexcept : config_(config) {}
-  void estimate_cell(const search::CellTree& tree, std::uint32_t at,
-                     NormalsBuffer& out) const noexcept;
 
   Config config_;
 };

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "dseam/base/lanes.hpp"
@@ -41,6 +43,12 @@ struct Box {
   float low_x, low_y, low_z;
   float high_x, high_y, high_z;
 };
+
+/// The least box around two.
+[[nodiscard]] inline Box both(const Box& a, const Box& b) noexcept {
+  return {std::min(a.low_x, b.low_x),   std::min(a.low_y, b.low_y),   std::min(a.low_z, b.low_z),
+          std::max(a.high_x, b.high_x), std::max(a.high_y, b.high_y), std::max(a.high_z, b.high_z)};
+}
 
 /// Squared distances of `box` to the eight boxes of `node`. A float distance computed between any
 /// two points inside is never less: subtraction, product and sum round monotonically.
@@ -94,9 +102,46 @@ class CellTree {
     return cell_storage_.first(num_cells_);
   }
   [[nodiscard]] Box box_of(std::uint32_t cell) const noexcept;
-  /// A cell near the point: the way down that looks shortest at each step.
-  [[nodiscard]] std::uint32_t cell_near(const Box& point) const noexcept;
+  /// Eight cells with one parent are a block, the last one of fewer.
+  [[nodiscard]] std::uint32_t num_blocks() const noexcept {
+    return static_cast<std::uint32_t>(cells_of(num_cells_));
+  }
+  [[nodiscard]] static std::uint32_t block_of(std::uint32_t cell) noexcept {
+    return cell / static_cast<std::uint32_t>(kLanes);
+  }
+  [[nodiscard]] static std::uint32_t first_of(std::uint32_t block) noexcept {
+    return block * static_cast<std::uint32_t>(kLanes);
+  }
+  [[nodiscard]] std::uint32_t end_of(std::uint32_t block) const noexcept {
+    return std::min(first_of(block + 1), static_cast<std::uint32_t>(num_cells_));
+  }
+  [[nodiscard]] Box box_of_block(std::uint32_t block) const noexcept;
 
+  /// Calls `visit(cell)` for every cell within `reach()` of `box`, at each step down the tree the
+  /// nearest first. `reach` may shrink meanwhile.
+  ///
+  /// Time:    bounded by the number of cells; no recursion.
+  template <typename ReachOf, typename Visit>
+  void visit_nearest_first(const Box& box, const ReachOf& reach,
+                           const Visit& visit) const noexcept {
+    std::array<Open, kMaxLevels> open;
+    std::size_t level = num_levels_ - 1;
+    if (num_levels_ > 0) {
+      open[level] = open_node(level, 0, box);
+    }
+    while (level < num_levels_) {
+      const std::uint32_t lane = open[level].take_nearest(reach());
+      const std::uint32_t child = first_of(open[level].number) + lane;
+      if (lane == kLanes) {
+        ++level;
+      } else if (level == 0) {
+        visit(child);
+      } else {
+        --level;
+        open[level] = open_node(level, child, box);
+      }
+    }
+  }
   /// Calls `visit(cell)` for `start`, then for every other cell within `reach()` of `box`, nearest
   /// relations first. `reach` may shrink meanwhile.
   ///
@@ -105,13 +150,13 @@ class CellTree {
   void visit_around(std::uint32_t start, const Box& box, const ReachOf& reach,
                     const Visit& visit) const noexcept {
     visit(start);
-    std::uint32_t child = start;
-    for (std::size_t level = 0; level < num_levels_; ++level) {
-      const auto node = static_cast<std::uint32_t>(child / kLanes);
-      const std::uint32_t others = near_children(level, node, box, reach());
-      descend(level, node, others & ~(1U << (child % kLanes)), box, reach, visit);
-      child = node;
-    }
+    visit_up(0, start, box, reach, visit);
+  }
+  /// The same for all cells but those of a block.
+  template <typename ReachOf, typename Visit>
+  void visit_beyond(std::uint32_t block, const Box& box, const ReachOf& reach,
+                    const Visit& visit) const noexcept {
+    visit_up(1, block, box, reach, visit);
   }
 
  private:
@@ -119,6 +164,37 @@ class CellTree {
     std::uint32_t node;
     std::uint32_t children;  ///< One bit each.
   };
+
+  /// A node some of whose children are still to be visited.
+  struct Open {
+    const Node* node;
+    std::uint32_t number;
+    FloatLanes gaps;  ///< Infinite once the child was taken.
+
+    /// kLanes when none is within reach.
+    [[nodiscard]] std::uint32_t take_nearest(Reach reach) noexcept {
+      const float least = lanes::least(gaps);
+      std::uint32_t nearest = bits(gaps <= lanes::splat(least));
+      if (!(least <= reach.squared_mm2) || !(least < std::numeric_limits<float>::infinity())) {
+        return kLanes;
+      }
+      if (least == reach.squared_mm2) {
+        for (std::uint32_t left = nearest; left != 0; left &= left - 1) {
+          const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+          nearest &= ~((node->first_index[lane] < reach.index ? 0U : 1U) << lane);
+        }
+      }
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(nearest | 1U << kLanes));
+      gaps =
+          select(lanes::is_lane(lane), lanes::splat(std::numeric_limits<float>::infinity()), gaps);
+      return lane;
+    }
+  };
+  [[nodiscard]] Open open_node(std::size_t level, std::uint32_t number,
+                               const Box& box) const noexcept {
+    const Node& node = node_storage_[level_begin_[level] + number];
+    return {&node, number, squared_gaps(node, box)};
+  }
 
   [[nodiscard]] std::uint32_t near_children(std::size_t level, std::uint32_t node, const Box& box,
                                             Reach reach) const noexcept {
@@ -132,6 +208,17 @@ class CellTree {
       near |= (n.first_index[lane] < reach.index ? 1U : 0U) << lane;
     }
     return near;
+  }
+
+  template <typename ReachOf, typename Visit>
+  void visit_up(std::size_t level, std::uint32_t child, const Box& box, const ReachOf& reach,
+                const Visit& visit) const noexcept {
+    for (; level < num_levels_; ++level) {
+      const auto node = static_cast<std::uint32_t>(child / kLanes);
+      const std::uint32_t others = near_children(level, node, box, reach());
+      descend(level, node, others & ~(1U << (child % kLanes)), box, reach, visit);
+      child = node;
+    }
   }
 
   template <typename ReachOf, typename Visit>

@@ -12,6 +12,8 @@
 #include "dseam/cloud/cloud.hpp"
 #include "dseam/search/cell_tree.hpp"
 #include "dseam/search/curve_order.hpp"
+#include "dseam/search/near_points.hpp"
+#include "dseam/search/query_cell.hpp"
 
 namespace dseam::search {
 
@@ -21,8 +23,6 @@ struct Neighbour {
   float squared_mm2 = 0.0F;
 };
 
-class NearestList;
-
 /// Finds the nearest points of a cloud, exactly.
 ///
 /// Points are sorted along a Hilbert curve over a grid, whose cells are divided further where they
@@ -30,10 +30,11 @@ class NearestList;
 /// are ordered by index, so the answer is unique. What is not finite, or further than kMaxMm from
 /// the origin on an axis, is left out and counted.
 ///
-/// Memory:  about 40 bytes a point; the indexed points are copied.
+/// Memory:  about 40 bytes a point and 17 kB; the indexed points are copied.
 /// Time:    rebuild() is linear but for 10 more bits of grid where points crowd, at most 20 times;
 ///          queries visit only boxes that may hold an answer, whatever the points' distribution.
-/// Context: real-time safe; after rebuild() any number of threads may query.
+/// Context: real-time safe; after rebuild() any number of threads may query single points, and one
+///          of them all points at once.
 class GridIndex {
  public:
   static constexpr float kMaxMm = 1.0e7F;
@@ -49,7 +50,9 @@ class GridIndex {
   [[nodiscard]] static constexpr std::size_t bytes(std::size_t max_points) noexcept {
     const std::size_t cells = CellTree::cells_of(max_points);
     return Arena::bytes<Cell>(cells) + Arena::bytes<Node>(CellTree::nodes_of(cells)) +
-           2 * Arena::bytes<CurvePlace>(max_points) + Arena::bytes<std::uint32_t>(kCurveCounters);
+           2 * Arena::bytes<CurvePlace>(max_points) + Arena::bytes<std::uint32_t>(kCurveCounters) +
+           Arena::bytes<float>(NearPoints::kFloats) +
+           Arena::bytes<std::uint32_t>(NearPoints::kIndices);
   }
   /// kInvalidArgument: no point, or more than 32 bits count. kOutOfMemory: the arena is too small.
   [[nodiscard]] static Result<GridIndex> make(std::size_t max_points, Arena& arena) noexcept;
@@ -83,7 +86,12 @@ class GridIndex {
   std::uint32_t for_each_radius(float radius_mm, std::span<Neighbour> scratch,
                                 const Visit& visit) const noexcept;
 
-  /// For stages that work on whole cells.
+  /// For stages that work on whole cells: for each one `work.start(cell)`, then
+  /// `work.add(its points, near points)` once or more with what lies within `radius_mm` of the
+  /// cell's box, its own points first, always in the same order, then `work.finish(cell)`.
+  template <typename Work>
+  void for_each_cell(float radius_mm, Work& work) const noexcept;
+
   [[nodiscard]] const CellTree& tree() const noexcept { return tree_; }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
@@ -91,41 +99,62 @@ class GridIndex {
   GridIndex(std::size_t max_points, Arena& arena) noexcept;
   Report collect(const cloud::CloudView& cloud) noexcept;
   void fill_cells(const cloud::CloudView& cloud) noexcept;
-  /// The cells within reach of a cell, which its eight points share.
-  struct NearCells {
-    std::array<std::uint32_t, 96> cells;
-    std::size_t count = 0;
-    bool all_fit = true;
-  };
-  [[nodiscard]] NearCells cells_near(std::uint32_t at, Reach reach) const noexcept;
+  [[nodiscard]] NearPoints near_points() const noexcept {
+    return {tree_, near_floats_, near_indices_};
+  }
   /// Those within reach of point `lane` of a cell, without itself; returns how many there are.
-  [[nodiscard]] std::size_t others_in(const NearCells& near, std::uint32_t at, std::size_t lane,
-                                      Reach reach, std::span<Neighbour> found) const noexcept;
-  [[nodiscard]] std::size_t others_within(std::uint32_t at, std::size_t lane, Reach reach,
+  [[nodiscard]] std::size_t others_in(const NearView& near, std::uint32_t at, std::size_t lane,
+                                      float squared_mm2, std::span<Neighbour> found) const noexcept;
+  [[nodiscard]] std::size_t others_within(std::uint32_t at, std::size_t lane, float squared_mm2,
                                           std::span<Neighbour> found) const noexcept;
-  void offer_all(geometry::Vec3f point, NearestList& list) const noexcept;
 
   CellTree tree_;
   std::span<CurvePlace> places_;
   std::span<CurvePlace> spare_;
   std::span<std::uint32_t> counters_;
+  std::span<float> near_floats_;
+  std::span<std::uint32_t> near_indices_;
   std::size_t size_ = 0;
 };
+
+template <typename Work>
+void GridIndex::for_each_cell(float radius_mm, Work& work) const noexcept {
+  const float squared_mm2 = radius_mm * radius_mm;
+  NearPoints near = near_points();
+  for (std::uint32_t block = 0; block < tree_.num_blocks(); ++block) {
+    const bool fits = near.collect(block, tree_.box_of_block(block), squared_mm2);
+    for (std::uint32_t at = CellTree::first_of(block); at < tree_.end_of(block); ++at) {
+      const QueryCell query(tree_.cells()[at]);
+      const auto add = [&](const NearView& points) noexcept { work.add(query, points); };
+      work.start(at);
+      if (fits) {
+        add(near.all_of(at, tree_.box_of(at), squared_mm2));
+      } else {
+        near.in_parts(at, squared_mm2, add);
+      }
+      work.finish(at);
+    }
+  }
+}
 
 template <typename Visit>
 std::uint32_t GridIndex::for_each_radius(float radius_mm, std::span<Neighbour> scratch,
                                          const Visit& visit) const noexcept {
+  const float squared_mm2 = radius_mm * radius_mm;
   std::uint32_t num_cut_short = 0;
-  const Reach reach{radius_mm * radius_mm};
-  for (std::uint32_t at = 0; at < tree_.cells().size(); ++at) {
-    const Cell& cell = tree_.cells()[at];
-    const NearCells near = cells_near(at, reach);
-    for (std::size_t i = 0; i < kLanes && cell.index[i] != kNoPoint; ++i) {
-      const std::size_t count = near.all_fit ? others_in(near, at, i, reach, scratch)
-                                             : others_within(at, i, reach, scratch);
-      num_cut_short += count > scratch.size() ? 1U : 0U;
-      const std::size_t kept = std::min(count, scratch.size());
-      visit(cell.index[i], std::span<const Neighbour>(scratch.first(kept)));
+  NearPoints near = near_points();
+  for (std::uint32_t block = 0; block < tree_.num_blocks(); ++block) {
+    const bool fits = near.collect(block, tree_.box_of_block(block), squared_mm2);
+    for (std::uint32_t at = CellTree::first_of(block); at < tree_.end_of(block); ++at) {
+      const Cell& cell = tree_.cells()[at];
+      const NearView points = fits ? near.all_of(at, tree_.box_of(at), squared_mm2) : NearView{};
+      for (std::size_t i = 0; i < kLanes && cell.index[i] != kNoPoint; ++i) {
+        const std::size_t count = fits ? others_in(points, at, i, squared_mm2, scratch)
+                                       : others_within(at, i, squared_mm2, scratch);
+        num_cut_short += count > scratch.size() ? 1U : 0U;
+        const std::size_t kept = std::min(count, scratch.size());
+        visit(cell.index[i], std::span<const Neighbour>(scratch.first(kept)));
+      }
     }
   }
   return num_cut_short;

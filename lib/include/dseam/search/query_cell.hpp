@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-
 #include "dseam/search/cell_tree.hpp"
 
 namespace dseam::search {
@@ -23,9 +21,13 @@ class QueryCell {
   /// To point `i` of another cell.
   [[gnu::always_inline, nodiscard]] FloatLanes squared_distances(const Cell& other,
                                                                  std::size_t i) const noexcept {
-    const FloatLanes dx = lanes::splat(other.x[i]) - x;
-    const FloatLanes dy = lanes::splat(other.y[i]) - y;
-    const FloatLanes dz = lanes::splat(other.z[i]) - z;
+    return squared_distances(other.x[i], other.y[i], other.z[i]);
+  }
+  [[gnu::always_inline, nodiscard]] FloatLanes squared_distances(float to_x, float to_y,
+                                                                 float to_z) const noexcept {
+    const FloatLanes dx = lanes::splat(to_x) - x;
+    const FloatLanes dy = lanes::splat(to_y) - y;
+    const FloatLanes dz = lanes::splat(to_z) - z;
     return dx * dx + dy * dy + dz * dz;
   }
   /// Whether the box comes nearer to any of the eight than its own squared limit.
@@ -37,11 +39,6 @@ class QueryCell {
   [[gnu::always_inline, nodiscard]] std::uint32_t bits_within(
       const Box& box, const FloatLanes& limit) const noexcept {
     return bits(squared_gaps(box) <= limit);
-  }
-  /// A mask with lane `i` alone.
-  [[gnu::always_inline, nodiscard]] static IntLanes is_lane(std::size_t i) noexcept {
-    static constexpr std::array<std::int32_t, kLanes> kNumbers = {0, 1, 2, 3, 4, 5, 6, 7};
-    return lanes::load(kNumbers.data()) == lanes::splat(static_cast<std::int32_t>(i));
   }
 
   FloatLanes x;

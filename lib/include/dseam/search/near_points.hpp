@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "dseam/base/arena.hpp"
+#include "dseam/base/lane_packer.hpp"
+#include "dseam/search/cell_tree.hpp"
+
+namespace dseam::search {
+
+/// Points by reference, for loops over eight at a time.
+///
+/// Shape:   readable to the next multiple of kLanes; what lies beyond `count` is infinitely far.
+struct NearView {
+  const float* x;
+  const float* y;
+  const float* z;
+  const std::uint32_t* index;
+  std::size_t count;
+};
+
+struct EightPoints {
+  FloatLanes x, y, z;
+  IntLanes index;
+
+  [[gnu::always_inline, nodiscard]] static EightPoints of(const Cell& cell) noexcept {
+    return {lanes::load(cell.x), lanes::load(cell.y), lanes::load(cell.z),
+            lanes::load_lanes<IntLanes>(cell.index)};
+  }
+  [[gnu::always_inline, nodiscard]] static EightPoints of(const NearView& points,
+                                                          std::size_t at) noexcept {
+    return {lanes::load(points.x + at), lanes::load(points.y + at), lanes::load(points.z + at),
+            lanes::load_lanes<IntLanes>(points.index + at)};
+  }
+};
+
+/// Squared distances of eight points to a box. A float distance to a point inside is never less.
+class BoxGaps {
+ public:
+  explicit BoxGaps(const Box& box) noexcept
+      : low_x_(lanes::splat(box.low_x)),
+        low_y_(lanes::splat(box.low_y)),
+        low_z_(lanes::splat(box.low_z)),
+        high_x_(lanes::splat(box.high_x)),
+        high_y_(lanes::splat(box.high_y)),
+        high_z_(lanes::splat(box.high_z)) {}
+
+  [[gnu::always_inline, nodiscard]] FloatLanes squared_mm2(const EightPoints& p) const noexcept {
+    const FloatLanes x = p.x - min(max(p.x, low_x_), high_x_);
+    const FloatLanes y = p.y - min(max(p.y, low_y_), high_y_);
+    const FloatLanes z = p.z - min(max(p.z, low_z_), high_z_);
+    return x * x + y * y + z * z;
+  }
+
+ private:
+  FloatLanes low_x_, low_y_, low_z_, high_x_, high_y_, high_z_;
+};
+
+/// An appendable list of points over lent storage.
+class PointList {
+ public:
+  [[nodiscard]] static constexpr std::size_t floats_of(std::size_t capacity) noexcept {
+    return 3 * (capacity + kLanes);
+  }
+  [[nodiscard]] static constexpr std::size_t indices_of(std::size_t capacity) noexcept {
+    return capacity + kLanes;
+  }
+  PointList(std::span<float> floats, std::span<std::uint32_t> indices) noexcept
+      : x_(floats.data()),
+        y_(floats.data() + indices.size()),
+        z_(floats.data() + 2 * indices.size()),
+        index_(indices.data()),
+        capacity_(indices.size() - kLanes) {}
+
+  void clear() noexcept { count_ = 0; }
+  /// For all eight; else append() must not be called.
+  [[nodiscard]] bool has_room() const noexcept { return count_ + kLanes <= capacity_; }
+  /// Those whose bit is set.
+  [[gnu::always_inline]] void append(const EightPoints& points, std::uint32_t bits) noexcept {
+    const lanes::LanePacker packer(bits);
+    packer.store(points.x, x_ + count_);
+    packer.store(points.y, y_ + count_);
+    packer.store(points.z, z_ + count_);
+    packer.store(points.index, index_ + count_);
+    count_ += static_cast<std::size_t>(std::popcount(bits));
+  }
+  /// Valid until the list changes.
+  [[nodiscard]] NearView view() noexcept;
+
+ private:
+  float* x_;
+  float* y_;
+  float* z_;
+  std::uint32_t* index_;
+  std::size_t capacity_;
+  std::size_t count_ = 0;
+};
+
+/// How far from a box points are wanted: squared distances in (above, upto].
+struct Ring {
+  float above_mm2;
+  float upto_mm2;
+};
+
+/// The points around the eight cells of a lowest node of the tree, found once for all of them and
+/// then narrowed for each: what lies side by side in memory is looked at without a branch.
+///
+/// Memory:  17 kB, lent.
+class NearPoints {
+ public:
+  static constexpr std::size_t kCapacity = 512;
+  static constexpr std::size_t kFloats = 2 * PointList::floats_of(kCapacity);
+  static constexpr std::size_t kIndices = 2 * PointList::indices_of(kCapacity);
+
+  NearPoints(const CellTree& tree, std::span<float> floats,
+             std::span<std::uint32_t> indices) noexcept
+      : tree_(tree),
+        of_block_(floats.first(kFloats / 2), indices.first(kIndices / 2)),
+        of_cell_(floats.last(kFloats / 2), indices.last(kIndices / 2)) {}
+
+  /// Takes all points of the cells of `block`, and of the others those within reach of the box.
+  /// False when they are too many.
+  [[nodiscard]] bool collect(std::uint32_t block, const Box& box, float squared_mm2) noexcept;
+
+  /// Of what was collected the points around the box of cell `at` of that block, but its own.
+  [[nodiscard]] NearView others_of(std::uint32_t at, const Box& box, Ring ring) noexcept;
+  /// The same with its own points, which come first.
+  [[nodiscard]] NearView all_of(std::uint32_t at, const Box& box, float squared_mm2) noexcept;
+
+  /// The points of other cells around a box of points of cell `at`, whatever was collected. None
+  /// when they are too many.
+  [[nodiscard]] NearView others_around(std::uint32_t at, const Box& box,
+                                       float squared_mm2) noexcept;
+
+  /// What all_of() gives, in the same order, for a block that was not collected: `add` gets it in
+  /// parts.
+  template <typename Add>
+  void in_parts(std::uint32_t at, float squared_mm2, const Add& add) noexcept {
+    const Box box = tree_.box_of(at);
+    const BoxGaps gaps(box);
+    const FloatLanes limit = lanes::splat(squared_mm2);
+    const auto take = [&](std::uint32_t cell) noexcept {
+      if (!of_cell_.has_room()) {
+        add(of_cell_.view());
+        of_cell_.clear();
+      }
+      const EightPoints points = EightPoints::of(tree_.cells()[cell]);
+      of_cell_.append(points, bits(gaps.squared_mm2(points) <= limit));
+    };
+    of_cell_.clear();
+    take(at);
+    const std::uint32_t block = CellTree::block_of(at);
+    for (std::uint32_t cell = tree_.first_of(block); cell < tree_.end_of(block); ++cell) {
+      if (cell != at) {
+        take(cell);
+      }
+    }
+    tree_.visit_beyond(
+        block, box, [squared_mm2]() noexcept { return Reach{squared_mm2}; }, take);
+    add(of_cell_.view());
+  }
+
+ private:
+  void narrow(const BoxGaps& gaps, Ring ring, std::size_t from, std::size_t to) noexcept;
+
+  const CellTree& tree_;
+  PointList of_block_;
+  PointList of_cell_;
+};
+
+}  // namespace dseam::search
