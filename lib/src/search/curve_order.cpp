@@ -20,7 +20,11 @@ using lanes::splat;
 constexpr int kBitsPerAxis = 10;
 constexpr float kLastCell = 1023.0F;
 constexpr std::size_t kMaxRefinements = 24;
-constexpr std::size_t kSmallRun = 48;  // Below this an insertion sort beats clearing the counters.
+constexpr std::size_t kDigits = 3;
+constexpr std::uint32_t kBitsPerDigit = kBitsPerAxis;
+constexpr std::uint32_t kPlacesPerDigit = 1U << kBitsPerDigit;
+static_assert(kCurveCounters == kDigits * kPlacesPerDigit);
+constexpr std::size_t kSmallRun = 96;  // Below this an insertion sort beats clearing the counters.
 
 struct Grid {
   geometry::Vec3f low;
@@ -82,11 +86,12 @@ IntLanes cell_of(const float* coordinate, float low, float cells_per_mm) noexcep
   return to_int(min(scaled, splat(kLastCell)));
 }
 
-void key_eight(const cloud::CloudView& cloud, const Grid& grid,
-               std::span<CurvePlace> places) noexcept {
-  alignas(32) float x[kLanes] = {};
-  alignas(32) float y[kLanes] = {};
-  alignas(32) float z[kLanes] = {};
+// `to` may be where `places` are.
+void key_eight(const cloud::CloudView& cloud, const Grid& grid, std::span<const CurvePlace> places,
+               CurvePlace* to) noexcept {
+  alignas(32) float x[kLanes];
+  alignas(32) float y[kLanes];
+  alignas(32) float z[kLanes];
   for (std::size_t i = 0; i < kLanes; ++i) {
     const std::size_t index = places[std::min(i, places.size() - 1)].index;
     x[i] = cloud.x[index];
@@ -99,14 +104,14 @@ void key_eight(const cloud::CloudView& cloud, const Grid& grid,
   alignas(32) std::int32_t keys[kLanes];
   store(shift_left<2>(spread(axes.x)) | shift_left<1>(spread(axes.y)) | spread(axes.z), keys);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    places[i].key = static_cast<std::uint32_t>(keys[i]);
+    to[i] = {static_cast<std::uint32_t>(keys[i]), places[i].index};
   }
 }
 
-void key_all(const cloud::CloudView& cloud, const Grid& grid,
-             std::span<CurvePlace> places) noexcept {
+void key_all(const cloud::CloudView& cloud, const Grid& grid, std::span<const CurvePlace> places,
+             CurvePlace* to) noexcept {
   for (std::size_t i = 0; i < places.size(); i += kLanes) {
-    key_eight(cloud, grid, places.subspan(i, std::min(kLanes, places.size() - i)));
+    key_eight(cloud, grid, places.subspan(i, std::min(kLanes, places.size() - i)), to + i);
   }
 }
 
@@ -122,42 +127,44 @@ void insertion_sort(std::span<CurvePlace> places) noexcept {
 }
 
 std::uint32_t digit_of(std::uint32_t key, std::size_t digit) noexcept {
-  return (key >> (8U * digit)) & 0xFFU;
+  return (key >> (kBitsPerDigit * digit)) % kPlacesPerDigit;
 }
 
 void count_digits(std::span<const CurvePlace> places, std::span<std::uint32_t> counters) noexcept {
   std::fill(counters.begin(), counters.end(), 0U);
   for (const CurvePlace& place : places) {
-    for (std::size_t digit = 0; digit < 4; ++digit) {
-      ++counters[digit * 256 + digit_of(place.key, digit)];
+    for (std::size_t digit = 0; digit < kDigits; ++digit) {
+      ++counters[digit * kPlacesPerDigit + digit_of(place.key, digit)];
     }
   }
 }
 
-// Four stable passes of eight bits, so that the result ends where it began.
-void radix_sort(std::span<CurvePlace> places, std::span<CurvePlace> spare,
+// Three stable passes of ten bits: what was in `from` ends in `to`.
+void radix_sort(std::span<CurvePlace> from, std::span<CurvePlace> to,
                 std::span<std::uint32_t> counters) noexcept {
-  count_digits(places, counters);
-  for (std::size_t digit = 0; digit < 4; ++digit) {
-    const std::span<std::uint32_t> begin = counters.subspan(digit * 256, 256);
+  count_digits(from, counters);
+  for (std::size_t digit = 0; digit < kDigits; ++digit) {
+    const std::span<std::uint32_t> begin =
+        counters.subspan(digit * kPlacesPerDigit, kPlacesPerDigit);
     std::uint32_t sum = 0;
     for (std::uint32_t& count : begin) {
       sum += std::exchange(count, sum);
     }
-    for (const CurvePlace& place : places) {
-      spare[begin[digit_of(place.key, digit)]++] = place;
+    for (const CurvePlace& place : from) {
+      to[begin[digit_of(place.key, digit)]++] = place;
     }
-    std::swap(places, spare);
+    std::swap(from, to);
   }
 }
 
 void sort_over_grid(const cloud::CloudView& cloud, const Grid& grid, std::span<CurvePlace> places,
                     std::span<CurvePlace> spare, std::span<std::uint32_t> counters) noexcept {
-  key_all(cloud, grid, places);
   if (places.size() <= kSmallRun) {
+    key_all(cloud, grid, places, places.data());
     insertion_sort(places);
   } else {
-    radix_sort(places, spare.first(places.size()), counters);
+    key_all(cloud, grid, places, spare.data());
+    radix_sort(spare.first(places.size()), places, counters);
   }
 }
 

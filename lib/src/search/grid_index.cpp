@@ -92,14 +92,20 @@ GridIndex::Report GridIndex::collect(const cloud::CloudView& cloud) noexcept {
 
 void GridIndex::fill_cells(const cloud::CloudView& cloud) noexcept {
   const std::span<Cell> cells = tree_.storage().first(CellTree::cells_of(size_));
-  for (std::size_t i = 0; i < cells.size() * kLanes; ++i) {
+  if (!cells.empty()) {
+    Cell& last = cells.back();
+    std::fill_n(last.x, kLanes, kInfinity);
+    std::fill_n(last.y, kLanes, kInfinity);
+    std::fill_n(last.z, kLanes, kInfinity);
+    std::fill_n(last.index, kLanes, kNoPoint);
+  }
+  for (std::size_t i = 0; i < size_; ++i) {
     Cell& cell = cells[i / kLanes];
     const std::size_t lane = i % kLanes;
-    const bool used = i < size_;
-    const std::uint32_t index = used ? places_[i].index : kNoPoint;
-    cell.x[lane] = used ? cloud.x[index] : kInfinity;
-    cell.y[lane] = used ? cloud.y[index] : kInfinity;
-    cell.z[lane] = used ? cloud.z[index] : kInfinity;
+    const std::uint32_t index = places_[i].index;
+    cell.x[lane] = cloud.x[index];
+    cell.y[lane] = cloud.y[index];
+    cell.z[lane] = cloud.z[index];
     cell.index[lane] = index;
   }
 }

@@ -59,9 +59,18 @@ void NearPoints::narrow(const BoxGaps& gaps, Ring ring, std::size_t from, std::s
 NearView NearPoints::others_of(std::uint32_t at, const Box& box, Ring ring) noexcept {
   const std::size_t own = at % kLanes * kLanes;
   const BoxGaps gaps(box);
-  of_cell_.clear();
-  narrow(gaps, ring, 0, own);
-  narrow(gaps, ring, own + kLanes, kCapacity);
+  const NearView points = of_block_.view();
+  const FloatLanes above = lanes::splat(ring.above_mm2);
+  const FloatLanes upto = lanes::splat(ring.upto_mm2);
+  PointList list = of_cell_;
+  list.clear();
+  for (std::size_t i = own == 0 ? kLanes : 0; i < points.count;) {
+    const EightPoints eight = EightPoints::of(points, i);
+    const FloatLanes squared = gaps.squared_mm2(eight);
+    list.append_places(eight, bits((above < squared) & (squared <= upto)));
+    i += i + kLanes == own ? 2 * kLanes : kLanes;
+  }
+  of_cell_ = list;
   return of_cell_.view();
 }
 

@@ -15,7 +15,7 @@ struct CurvePlace {
   std::uint32_t index;
 };
 
-inline constexpr std::size_t kCurveCounters = 4 * 256;
+inline constexpr std::size_t kCurveCounters = 3 * 1024;
 
 /// Sorts the points named in `places` along a Hilbert curve over a grid of 1024 cells an axis.
 /// Cells that hold more than `max_in_cell` points are sorted again over a grid of their own, and so

@@ -81,11 +81,16 @@ class PointList {
   [[nodiscard]] bool has_room() const noexcept { return count_ + kLanes <= capacity_; }
   /// Those whose bit is set.
   [[gnu::always_inline]] void append(const EightPoints& points, std::uint32_t bits) noexcept {
+    lanes::LanePacker(bits).store(points.index, index_ + count_);
+    append_places(points, bits);
+  }
+  /// The same without their indices.
+  [[gnu::always_inline]] void append_places(const EightPoints& points,
+                                            std::uint32_t bits) noexcept {
     const lanes::LanePacker packer(bits);
     packer.store(points.x, x_ + count_);
     packer.store(points.y, y_ + count_);
     packer.store(points.z, z_ + count_);
-    packer.store(points.index, index_ + count_);
     count_ += static_cast<std::size_t>(std::popcount(bits));
   }
   /// Valid until the list changes.
@@ -126,7 +131,8 @@ class NearPoints {
   /// False when they are too many.
   [[nodiscard]] bool collect(std::uint32_t block, const Box& box, float squared_mm2) noexcept;
 
-  /// Of what was collected the points around the box of cell `at` of that block, but its own.
+  /// Of what was collected the points around the box of cell `at` of that block, but its own; their
+  /// indices are not given.
   [[nodiscard]] NearView others_of(std::uint32_t at, const Box& box, Ring ring) noexcept;
   /// The same with its own points, which come first.
   [[nodiscard]] NearView all_of(std::uint32_t at, const Box& box, float squared_mm2) noexcept;
