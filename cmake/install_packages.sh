@@ -17,7 +17,7 @@ declare -A packages=(
   # make bench: the peers
   [bench]="libpcl-dev libopencv-dev libnanoflann-dev libbenchmark-dev valgrind gcovr"
   # make test-vm: a guest with real kernel drivers
-  [vm]="qemu-system-x86 busybox-static iproute2 can-utils v4l-utils rt-tests kmod"
+  [vm]="qemu-system-x86 busybox-static iproute2"
   # preset host-rtsan
   [rtsan]="clang-22 libclang-rt-22-dev"
 )

@@ -28,7 +28,10 @@ ExitCode run(const std::string& interface, const Invocation& invocation) {
   hal::sim::SimRobot robot(config, *bus);
   std::cout << "robot on " << interface << "; Ctrl-C ends it" << std::endl;
   serve(robot, clock, kPeriodNs, interrupted);
-  std::cout << "executed " << robot.executed().size() + robot.not_recorded() << " set points\n";
+  const link::Receiver& receiver = robot.receiver();
+  std::cout << "executed " << robot.executed().size() + robot.not_recorded() << " set points\n"
+            << "arc " << (receiver.arc_on() ? "on" : "off") << ", link fault "
+            << link::name(receiver.fault()) << '\n';
   return ExitCode::kDone;
 }
 

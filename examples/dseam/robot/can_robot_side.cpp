@@ -39,11 +39,12 @@ std::unique_ptr<hal::socketcan::SocketCanBus> open_can(const std::string& interf
   return std::move(bus.value());
 }
 
-CanRobotSide::CanRobotSide(const std::string& interface, bool classic)
+CanRobotSide::CanRobotSide(const std::string& interface, const link::Addressing& addressing)
     : interface_(interface),
-      bus_(open_can(interface, classic)),
+      bus_(open_can(interface, addressing.classic)),
       cycle_(rt::Cycle::make({}, clock_).value()),
-      real_time_(set_up_for_real_time()) {}
+      real_time_(set_up_for_real_time()),
+      last_words_(interface, addressing) {}
 
 std::vector<std::pair<std::string, std::string>> CanRobotSide::facts() const {
   const hal::BusHealth health = bus_->health();

@@ -5,17 +5,19 @@
 
 #include "dseam/hal/socketcan/socketcan_bus.hpp"
 #include "dseam/rt/linux/monotonic_clock.hpp"
+#include "robot/last_words.hpp"
 #include "robot/robot_side.hpp"
 
 namespace dseam::program {
 
-/// A robot on a CAN interface of Linux, in real time.
+/// A robot on a CAN interface of Linux, in real time. Whatever ends the process, the abort comes
+/// first.
 class CanRobotSide final : public RobotSide {
  public:
   /// Opens the interface and sets the calling thread up for real time as far as it is allowed.
   ///
   /// Errors:  throws Failure(kDevice) that names the interface, the fault and the cure.
-  CanRobotSide(const std::string& interface, bool classic);
+  CanRobotSide(const std::string& interface, const link::Addressing& addressing);
 
   hal::CanBus& bus() override { return *bus_; }
   hal::Clock& clock() override { return clock_; }
@@ -30,6 +32,7 @@ class CanRobotSide final : public RobotSide {
   rt::MonotonicClock clock_;
   rt::Cycle cycle_;
   bool real_time_;
+  LastWords last_words_;
 };
 
 /// Opens a CAN interface. Throws Failure(kDevice) with the cure.

@@ -19,7 +19,7 @@ std::unique_ptr<RobotSide> open_robot(const std::string& robot, const WeldRun::C
   if (robot == "sim") {
     return std::make_unique<SimRobotSide>(motion.points().front().pose);
   }
-  return std::make_unique<CanRobotSide>(robot.substr(4), config.link.addressing.classic);
+  return std::make_unique<CanRobotSide>(robot.substr(4), config.link.addressing);
 }
 
 void write_log(hal::candump::RecordingBus& bus, const std::filesystem::path& file) {
@@ -40,13 +40,26 @@ std::string fault_of(const WeldOutcome& outcome) {
   return std::string("the robot did not follow: ") + link::name(outcome.health.link_fault);
 }
 
-void add_facts(const WeldOutcome& outcome, const RobotSide& side, DriveReport& report) {
+std::string microseconds(const rt::Histogram& times) {
+  char text[96];
+  std::snprintf(text, sizeof(text), "99.9 %% under %u us, worst %.1f us of %llu",
+                times.quantile_us(0.999), 1e-3 * static_cast<double>(times.max_ns()),
+                static_cast<unsigned long long>(times.count()));
+  return text;
+}
+
+void add_facts(const WeldOutcome& outcome, const RobotSide& side, const rt::CycleTimes& times,
+               DriveReport& report) {
   report.facts = {{"set points sent", std::to_string(outcome.link.points_sent)},
                   {"set points sent again", std::to_string(outcome.link.points_resent)},
                   {"cycles", std::to_string(outcome.health.cycles)},
                   {"cycles overrun", std::to_string(outcome.health.overruns)},
                   {"frames sent", std::to_string(outcome.health.frames_sent)},
                   {"frames received", std::to_string(outcome.health.frames_received)}};
+  if (times.compute.max_ns() > 0) {  // Virtual time stands still while it is computed.
+    report.facts.emplace_back("wake-up of the cycle", microseconds(times.wake_up));
+    report.facts.emplace_back("compute of the cycle", microseconds(times.compute));
+  }
   const auto more = side.facts();
   report.facts.insert(report.facts.end(), more.begin(), more.end());
 }
@@ -72,7 +85,7 @@ DriveReport drive_robot(const std::string& robot, const WeldRun::Config& config,
   DriveReport report;
   report.finished = outcome.finished;
   report.fault = outcome.finished ? "" : fault_of(outcome);
-  add_facts(outcome, *side, report);
+  add_facts(outcome, *side, weld.times(), report);
   return report;
 }
 

@@ -107,6 +107,8 @@ void WeldRun::cycle() {
     session_.trip(rt::Fault::kOperator);  // The abort leaves with this very cycle.
   }
   session_.step(inputs_);
+  times_.wake_up.add(inputs_.tick.woke_ns - inputs_.tick.due_ns);
+  times_.compute.add(side_.clock().now_ns() - inputs_.tick.woke_ns);
 }
 
 /// Until the robot stands with the arc off, or half a second has passed.

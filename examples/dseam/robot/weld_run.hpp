@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "dseam/rt/cycle_times.hpp"
 #include "dseam/rt/weld_session.hpp"
 #include "robot/robot_side.hpp"
 
@@ -42,6 +43,7 @@ class WeldRun {
   WeldRun& operator=(const WeldRun&) = delete;
 
   WeldOutcome run(const Planner& plan, const Progress& progress);
+  [[nodiscard]] const rt::CycleTimes& times() const { return times_; }
 
  private:
   /// Cycles until `done`, at most `limit_s`; false when a fault or an interrupt came first.
@@ -57,6 +59,7 @@ class WeldRun {
   link::Sender sender_;
   rt::WeldSession session_;
   rt::WeldSession::Inputs inputs_;
+  rt::CycleTimes times_;
 };
 
 }  // namespace dseam::program

@@ -37,11 +37,30 @@ void speak() noexcept {
   }
 }
 
-void on_ending(int) noexcept {
+/// Whoever watched the signals to end before; they are told as well.
+std::array<void (*)(int), std::size(kEnding)> others{};
+
+void on_ending(int signal_number) noexcept {
   const int error = errno;
   speak();
   stopping.store(true, std::memory_order_release);
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    if (kEnding[i] == signal_number && others[i] != nullptr) {
+      others[i](signal_number);
+    }
+  }
   errno = error;
+}
+
+void remember_others() noexcept {
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    struct sigaction before {};
+    const bool handled = sigaction(kEnding[i], nullptr, &before) == 0 &&
+                         before.sa_handler != SIG_DFL && before.sa_handler != SIG_IGN;
+    if (handled && before.sa_handler != on_ending) {
+      others[i] = before.sa_handler;
+    }
+  }
 }
 
 void on_defect(int signal_number) noexcept {
@@ -65,9 +84,10 @@ bool set_handler(const int (&signals)[kCount], void (*handler)(int), int flags) 
 }  // namespace
 
 Result<> install() noexcept {
-  const bool ending = set_handler(kEnding, on_ending, SA_RESTART);
-  const bool defects =
-      set_handler(kDefects, on_defect, static_cast<int>(SA_RESETHAND) | SA_NODEFER);
+  remember_others();
+  const int once = static_cast<int>(SA_RESETHAND);
+  const bool ending = set_handler(kEnding, on_ending, once | SA_RESTART);
+  const bool defects = set_handler(kDefects, on_defect, once | SA_NODEFER);
   return ending && defects ? Result<>() : Errc::kUnavailable;
 }
 

@@ -76,6 +76,27 @@ TEST(LastGasp, a_signal_to_end_sends_it_and_lets_the_program_stop_in_order) {
   }
 }
 
+TEST(LastGasp, who_watched_the_signal_before_is_told_as_well) {
+  const Ended ended = end_by([] {
+    ::signal(SIGINT, [](int) { _exit(9); });
+    (void)last_gasp::install();
+    raise(SIGINT);
+  });
+
+  EXPECT_EQ(ended.written, "ARC-OFFARC-OFFARC-OFF");
+  EXPECT_EQ(WEXITSTATUS(ended.status), 9);
+}
+
+TEST(LastGasp, a_second_signal_to_end_is_not_held_up) {
+  const Ended ended = end_by([] {
+    raise(SIGTERM);
+    raise(SIGTERM);
+  });
+
+  EXPECT_TRUE(WIFSIGNALED(ended.status));
+  EXPECT_EQ(WTERMSIG(ended.status), SIGTERM);
+}
+
 TEST(LastGasp, says_nothing_when_nothing_welds) {
   const Ended ended = end_by([] {
     last_gasp::disarm();

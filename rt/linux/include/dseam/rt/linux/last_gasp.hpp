@@ -9,8 +9,9 @@
 namespace dseam::rt {
 
 /// Sends one prepared frame, the abort of the running session, when the process is told to end or
-/// breaks: SIGTERM, SIGINT, SIGHUP, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT. After it a signal to
-/// end only sets stop_requested(); one of a defect takes its usual course.
+/// breaks: SIGTERM, SIGINT, SIGHUP, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT. After it the first
+/// signal to end sets stop_requested() and goes on to the handler that was there before, and a
+/// second one takes its usual course, as one of a defect does at once.
 ///
 /// It is a help, not a safety function: what kills without a signal leaves the robot to its own
 /// silence limit.
