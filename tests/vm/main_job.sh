@@ -4,6 +4,7 @@
 # the kernel's CAN in between.
 set -u
 dseam=$1/examples/dseam/dseam
+player=$1/vm/counted/vivid_player
 set=$1/vm/scan-set
 failed=0
 
@@ -64,6 +65,18 @@ broken() {
   judge "$name" "exit $rc, arc $robot_says" "$robot_says" = "off, link fault Aborted" -a $rc != 0
 }
 
+# The views of the set are shown to two cameras of the kernel's, the depth to one and the gray to the
+# other; nobody tells where they were taken, so that the markers alone must join them.
+vivid() {
+  touch /out/vivid.log
+  tail -f -n +1 /out/vivid.log | "$player" "$set" >/out/player.log 2>&1 &
+  until [ -s /out/player.log ]; do sleep 0.1; done
+  whole vivid --camera v4l2:/dev/video0 --set 'camera.gray_device="/dev/video2"' --set 'camera.format="Y16"' \
+    --set camera.width=1280 --set camera.height=720 --set camera.mm_per_count=0.015625 \
+    --set camera.focal_px=2048 --set camera.settle_s=0.5 --set path.speed_mm_s=16
+}
+
 whole replay --camera "replay:$set" --set path.speed_mm_s=16
+vivid
 broken INT --camera "replay:$set"
 exit $failed

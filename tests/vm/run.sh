@@ -95,7 +95,8 @@ for kernel in "${kernels[@]}"; do
 done
 if [ -x "$build/examples/dseam/dseam" ]; then
   rm -rf "$build/vm/scan-set"
-  "$build/examples/dseam/dseam" record --camera sim --out "$build/vm/scan-set" >/dev/null
+  "$build/examples/dseam/dseam" record --camera sim --set cell.width=1280 --set cell.height=720 \
+    --out "$build/vm/scan-set" >/dev/null
   run "${kernels[0]}, counted" counted "${kernels[0]}" 1
   run "${kernels[0]}, counted again" counted "${kernels[0]}" 2
   run "same latencies in both" same_latencies

@@ -6,6 +6,7 @@
 namespace dseam::program {
 
 // The table of all keys, by what they are about.
+[[nodiscard]] std::vector<Key> camera_keys(LiveSettings& live);
 [[nodiscard]] std::vector<Key> cell_keys(hal::sim::CellConfig& config);
 [[nodiscard]] std::vector<Key> motion_keys(pipeline::MotionChain::Config& config);
 [[nodiscard]] std::vector<Key> session_keys(WeldRun::Config& config);

@@ -15,8 +15,7 @@ std::vector<Key> job_keys(Settings& s) {
       {"job", "max_points", &s.max_points, "More points in the clouds of a command are refused",
        "points", 1000, 16e6},
       {"job", "max_seam_points", &s.max_seam_points, "Room for the points of seam.csv", "points",
-       64, 1e6},
-      {"job", "live_views", &s.live_views, "Frames that are taken of a real camera", "", 1, 16}};
+       64, 1e6}};
 }
 
 std::vector<Key> seam_keys(pipeline::SeamChain::Config& c) {
@@ -84,6 +83,7 @@ std::vector<Key> keys_of(Settings& settings) {
   append(keys, motion_keys(settings.motion));
   append(keys, session_keys(settings.session));
   append(keys, hand_eye_keys(settings.hand_eye));
+  append(keys, camera_keys(settings.camera));
   append(keys, cell_keys(settings.cell));
   return keys;
 }

@@ -10,6 +10,7 @@
 #include "dseam/pipeline/seam_chain.hpp"
 #include "dseam/pipeline/weld_pipeline.hpp"
 #include "robot/weld_run.hpp"
+#include "scan/live_settings.hpp"
 
 namespace dseam::program {
 
@@ -20,7 +21,6 @@ struct Settings {
   Method method = Method::kDseam;
   std::uint32_t max_points = 4'000'000;
   std::uint32_t max_seam_points = 16384;
-  std::uint32_t live_views = 6;
   std::uint32_t max_voxels = 600'000;
   pipeline::SeamChain::Config seam;
   pipeline::WeldPipeline::Config pipeline;  ///< Its `seam` is the one above.
@@ -28,6 +28,7 @@ struct Settings {
   pipeline::MotionChain::Config motion;
   WeldRun::Config session;
   hal::sim::CellConfig cell;
+  LiveSettings camera;
 };
 
 /// The table of all keys, bound to `settings`, which must outlive it.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot/drive_robot.hpp"
 
+#include <chrono>
 #include <cstdio>
 #include <memory>
+#include <thread>
 
 #include "dseam/hal/candump/recording_bus.hpp"
 #include "failure.hpp"
@@ -21,6 +23,42 @@ std::unique_ptr<RobotSide> open_robot(const std::string& robot, const WeldRun::C
   }
   return std::make_unique<CanRobotSide>(robot.substr(4), config.link.addressing);
 }
+
+/// Shows how far the weld is, in a thread of its own: the cycle never waits for a terminal.
+class ShownProgress {
+ public:
+  explicit ShownProgress(Progress& progress) : thread_([this, &progress] { show(progress); }) {}
+  ~ShownProgress() {
+    ended_ = true;
+    thread_.join();
+  }
+  ShownProgress(const ShownProgress&) = delete;
+  ShownProgress& operator=(const ShownProgress&) = delete;
+
+  void set(std::size_t done, std::size_t total) {
+    total_ = total;
+    done_ = done;
+  }
+
+ private:
+  void show(Progress& progress) {
+    std::size_t shown = 0;
+    for (bool last = false; !last;) {
+      last = ended_;
+      const std::size_t done = done_;
+      if (done != shown) {
+        progress.show("welding", done, total_);
+        shown = done;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(last ? 0 : 100));
+    }
+  }
+
+  std::atomic<std::size_t> done_{0};
+  std::atomic<std::size_t> total_{0};
+  std::atomic<bool> ended_{false};
+  std::thread thread_;
+};
 
 void write_log(hal::candump::RecordingBus& bus, const std::filesystem::path& file) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> log(std::fopen(file.c_str(), "w"),
@@ -78,9 +116,12 @@ DriveReport drive_robot(const std::string& robot, const WeldRun::Config& config,
   const auto side = open_robot(robot, config, motion);
   hal::candump::RecordingBus bus(side->bus(), side->clock(), side->interface(), kRecordedFrames);
   WeldRun weld(config, *side, bus, interrupted);
-  const WeldOutcome outcome =
-      weld.run([&](const torch::TorchPose& now) { return motion.plan_from(now); },
-               [&](std::size_t done, std::size_t total) { progress.show("welding", done, total); });
+  WeldOutcome outcome;
+  {
+    ShownProgress shown(progress);
+    outcome = weld.run([&](const torch::TorchPose& now) { return motion.plan_from(now); },
+                       [&](std::size_t done, std::size_t total) { shown.set(done, total); });
+  }
   write_log(bus, can_log);
   DriveReport report;
   report.finished = outcome.finished;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scan/live_scan.hpp"
 
+#include <chrono>
 #include <utility>
 
+#include "dseam/hal/paired_camera.hpp"
 #include "failure.hpp"
 #ifdef DSEAM_HAS_ARAVIS
 #include "dseam/hal/aravis/aravis_camera.hpp"
@@ -15,56 +17,120 @@
 namespace dseam::program {
 namespace {
 
+using namespace std::chrono_literals;
+
 template <typename Camera>
 class LiveScan final : public ScanSource {
  public:
-  LiveScan(std::unique_ptr<Camera> camera, std::string name, std::size_t num_views)
-      : camera_(std::move(camera)), name_(std::move(name)), num_views_(num_views) {}
+  LiveScan(std::unique_ptr<Camera> camera, std::unique_ptr<Camera> gray, std::string name,
+           const LiveSettings& settings)
+      : camera_(std::move(camera)), gray_(std::move(gray)), name_(std::move(name)) {
+    num_views_ = settings.views;
+    settle_ = std::chrono::duration<double>(settings.settle_s);
+    if (gray_ != nullptr) {
+      constexpr std::int64_t kApartNs = 20'000'000;
+      both_.emplace(*camera_, *gray_, kApartNs);
+    }
+  }
 
-  hal::DepthCamera& camera() override { return *camera_; }
+  hal::DepthCamera& camera() override {
+    return both_ ? static_cast<hal::DepthCamera&>(*both_) : *camera_;
+  }
   hal::RobotState* robot_state() override { return nullptr; }
   [[nodiscard]] std::size_t num_views() const override { return num_views_; }
   [[nodiscard]] std::string description() const override { return name_; }
 
+  /// Takes frames all the time, so that none of the view before is left in the driver.
+  void await_view() override {
+    const auto until = std::chrono::steady_clock::now() + settle_;
+    while (std::chrono::steady_clock::now() < until) {
+      (void)camera().next(10ms);
+    }
+  }
+
  private:
   std::unique_ptr<Camera> camera_;
+  std::unique_ptr<Camera> gray_;
+  std::optional<hal::PairedCamera> both_;
   std::string name_;
-  std::size_t num_views_;
+  std::size_t num_views_ = 0;
+  std::chrono::duration<double> settle_{0.0};
 };
 
 template <typename Camera>
-std::unique_ptr<ScanSource> scan_of(Result<std::unique_ptr<Camera>> camera, const std::string& name,
-                                    const std::string& problem, std::size_t num_views) {
+std::unique_ptr<Camera> camera_of(Result<std::unique_ptr<Camera>> camera, const std::string& name,
+                                  const std::string& problem) {
   if (!camera.ok()) {
     throw Failure(ExitCode::kDevice, name + ": " + problem);
   }
-  return std::make_unique<LiveScan<Camera>>(std::move(camera.value()), name, num_views);
+  return std::move(camera.value());
 }
+
+#ifdef DSEAM_HAS_ARAVIS
+std::unique_ptr<ScanSource> open_aravis(const std::string& id, const LiveSettings& settings) {
+  using hal::aravis::AravisCamera;
+  hal::aravis::AravisConfig config;
+  config.id = id;
+  std::string problem;
+  const std::string name = "aravis:" + id;
+  auto camera = camera_of(AravisCamera::open(config, problem), name, problem);
+  return std::make_unique<LiveScan<AravisCamera>>(std::move(camera), nullptr, name, settings);
+}
+#endif
+
+#ifdef DSEAM_HAS_V4L2
+std::unique_ptr<hal::v4l2::V4l2Camera> open_node(const std::string& device, bool gray,
+                                                 const LiveSettings& settings) {
+  hal::v4l2::V4l2Config config;
+  config.device = device;
+  config.gray = gray;
+  config.width = settings.width;
+  config.height = settings.height;
+  std::string code = gray ? "GREY" : settings.format;
+  code.resize(4, ' ');
+  config.fourcc = depth::fourcc(code[0], code[1], code[2], code[3]);
+  config.model.scale[2] = settings.mm_per_count;
+  config.model.intrinsics.fx = settings.focal_px;
+  config.model.intrinsics.fy = settings.focal_px;
+  config.model.intrinsics.cx = 0.5 * (settings.width - 1.0);
+  config.model.intrinsics.cy = 0.5 * (settings.height - 1.0);
+  std::string problem;
+  return camera_of(hal::v4l2::V4l2Camera::open(config, hal::v4l2::linux_v4l2_sys(), problem),
+                   "v4l2:" + device, problem);
+}
+
+std::unique_ptr<ScanSource> open_v4l2(const std::string& device, const LiveSettings& settings) {
+  using hal::v4l2::V4l2Camera;
+  auto camera = open_node(device, false, settings);
+  std::unique_ptr<V4l2Camera> gray;
+  if (!settings.gray_device.empty()) {
+    gray = open_node(settings.gray_device, true, settings);
+    if (!hal::PairedCamera::check(*camera, *gray).ok()) {
+      throw Failure(ExitCode::kDevice, "v4l2:" + settings.gray_device +
+                                           ": its image is not of the size of the depth's");
+    }
+  }
+  return std::make_unique<LiveScan<V4l2Camera>>(std::move(camera), std::move(gray),
+                                                "v4l2:" + device, settings);
+}
+#endif
 
 }  // namespace
 
 std::unique_ptr<ScanSource> open_live_scan(const std::string& kind, const std::string& id,
-                                           std::size_t num_views) {
-  [[maybe_unused]] std::string problem;
-  const std::string name = kind + ":" + id;
+                                           const LiveSettings& settings) {
 #ifdef DSEAM_HAS_ARAVIS
   if (kind == "aravis") {
-    hal::aravis::AravisConfig config;
-    config.id = id;
-    auto camera = hal::aravis::AravisCamera::open(config, problem);
-    return scan_of(std::move(camera), name, problem, num_views);
+    return open_aravis(id, settings);
   }
 #endif
 #ifdef DSEAM_HAS_V4L2
   if (kind == "v4l2") {
-    hal::v4l2::V4l2Config config;
-    config.device = id;
-    auto camera = hal::v4l2::V4l2Camera::open(config, hal::v4l2::linux_v4l2_sys(), problem);
-    return scan_of(std::move(camera), name, problem, num_views);
+    return open_v4l2(id, settings);
   }
 #endif
-  throw Failure(ExitCode::kUsage, name + ": this backend was not built (" +
-                                      std::to_string(num_views) + " views asked for)");
+  throw Failure(ExitCode::kUsage, kind + ":" + id + ": this backend was not built (" +
+                                      std::to_string(settings.views) + " views asked for)");
 }
 
 std::vector<hal::CameraInfo> list_all_cameras() {

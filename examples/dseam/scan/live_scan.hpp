@@ -6,16 +6,17 @@
 #include <vector>
 
 #include "dseam/hal/camera_info.hpp"
+#include "scan/live_settings.hpp"
 #include "scan/scan.hpp"
 
 namespace dseam::program {
 
-/// A real camera of the backend `kind` ("aravis" or "v4l2"), of which `num_views` frames are taken.
+/// A real camera of the backend `kind` ("aravis" or "v4l2").
 ///
 /// Errors:  throws Failure: kDevice with the cure, kUsage where the backend was not built.
 [[nodiscard]] std::unique_ptr<ScanSource> open_live_scan(const std::string& kind,
                                                          const std::string& id,
-                                                         std::size_t num_views);
+                                                         const LiveSettings& settings);
 
 /// Every camera that any backend can see.
 [[nodiscard]] std::vector<hal::CameraInfo> list_all_cameras();

@@ -55,6 +55,7 @@ std::vector<ScannedView> take_views(ScanSource& source,
   std::vector<ScannedView> views(source.num_views());
   for (std::size_t i = 0; i < views.size(); ++i) {
     progress.show("scanning", i, views.size());
+    source.await_view();
     const auto lease = camera.next(kFrameLimit);
     if (!lease.ok() || interrupted) {
       throw Failure(ExitCode::kDevice, source.description() + ": view " + std::to_string(i) + ": " +

@@ -38,6 +38,8 @@ class ScanSource {
   virtual ~ScanSource() = default;
 
   [[nodiscard]] virtual hal::DepthCamera& camera() = 0;
+  /// Called before each view, with the camera started: a frame taken from then on is of that view.
+  virtual void await_view() {}
   /// nullptr when nobody says where the camera was.
   [[nodiscard]] virtual hal::RobotState* robot_state() = 0;
   [[nodiscard]] virtual std::size_t num_views() const = 0;

@@ -43,23 +43,44 @@ Result<> V4l2Camera::Session::open(std::string& problem) {
     return opened;
   }
   const v4l2_pix_format& format = stream->format();
-  const auto sample = depth::format_from_fourcc(format.pixelformat);
   model_ = config_.model;
   model_.intrinsics.width = format.width;
   model_.intrinsics.height = format.height;
-  model_.row_stride_bytes = format.bytesperline;
-  model_.format = sample.ok() ? sample.value() : model_.format;
-  const bool fits = depth::depth_bytes(model_) <= format.sizeimage;
-  if (!sample.ok() || !fits || !depth::FrameDecoder::make(model_).ok()) {
-    problem =
-        "its image is no depth image, or the configuration does not give its scale and "
-        "focal length";
-    return sample.ok() ? Errc::kInvalidArgument : Errc::kUnsupported;
+  if (const auto fits = config_.gray ? fit_gray(format) : fit_depth(format); !fits.ok()) {
+    problem = config_.gray ? "its image is not gray with one byte a pixel"
+                           : "its image is no depth image, or the configuration does not give its "
+                             "scale and focal length";
+    return fits;
   }
   grant_ = stream->grant();
   adopt(std::move(stream));
   control_ = std::thread([this] { run(); });
   return {};
+}
+
+Result<> V4l2Camera::Session::fit_depth(const v4l2_pix_format& format) {
+  const auto sample = depth::format_from_fourcc(format.pixelformat);
+  if (!sample.ok()) {
+    return Errc::kUnsupported;
+  }
+  model_.format = sample.value();
+  model_.row_stride_bytes = format.bytesperline;
+  frame_bytes_ = depth::depth_bytes(model_);
+  const bool fits = frame_bytes_ <= format.sizeimage && depth::FrameDecoder::make(model_).ok();
+  return fits ? Result<>() : Errc::kInvalidArgument;
+}
+
+Result<> V4l2Camera::Session::fit_gray(const v4l2_pix_format& format) {
+  const bool known = format.pixelformat == V4L2_PIX_FMT_GREY ||
+                     format.pixelformat == depth::fourcc('Y', '8', ' ', ' ');
+  if (!known) {
+    return Errc::kUnsupported;
+  }
+  model_.has_gray = true;
+  model_.gray_row_stride_bytes = format.bytesperline;
+  frame_bytes_ = depth::gray_bytes(model_);
+  return frame_bytes_ > 0 && frame_bytes_ <= format.sizeimage ? Result<>()
+                                                              : Result<>(Errc::kInvalidArgument);
 }
 
 /// The consumer sees that somebody wants the stream and lets go of it.
@@ -176,7 +197,8 @@ bool V4l2Camera::Session::reopen_once() {
                     stream->grant().bus_info == grant_.bus_info &&
                     stream->format().width == model_.intrinsics.width &&
                     stream->format().height == model_.intrinsics.height &&
-                    stream->format().bytesperline == model_.row_stride_bytes;
+                    stream->format().bytesperline ==
+                        (config_.gray ? model_.gray_row_stride_bytes : model_.row_stride_bytes);
   if (!same) {
     return false;
   }

@@ -71,6 +71,9 @@ class V4l2Camera::Session {
   void queue(Slot& slot) noexcept;
   void fail() noexcept;
 
+  Result<> fit_depth(const v4l2_pix_format& format);
+  Result<> fit_gray(const v4l2_pix_format& format);
+
   // The control thread's side.
   void run();
   [[nodiscard]] bool pause(std::chrono::milliseconds time);
@@ -83,6 +86,7 @@ class V4l2Camera::Session {
   const V4l2Config config_;
   V4l2Sys& sys_;
   depth::DepthModel model_;
+  std::size_t frame_bytes_ = 0;
   V4l2Grant grant_;
   CameraCounters counters_;
 

@@ -144,8 +144,8 @@ V4l2Camera::Session::Taken V4l2Camera::Session::newest(Taken oldest) noexcept {
 }
 
 bool V4l2Camera::Session::is_whole(const v4l2_buffer& buffer) const noexcept {
-  return (buffer.flags & V4L2_BUF_FLAG_ERROR) == 0 &&
-         buffer.bytesused >= depth::depth_bytes(model_) && buffer.bytesused <= buffer.length;
+  return (buffer.flags & V4L2_BUF_FLAG_ERROR) == 0 && buffer.bytesused >= frame_bytes_ &&
+         buffer.bytesused <= buffer.length;
 }
 
 void V4l2Camera::Session::count_gap(const v4l2_buffer& buffer) noexcept {
@@ -157,7 +157,9 @@ void V4l2Camera::Session::count_gap(const v4l2_buffer& buffer) noexcept {
 DepthFrame V4l2Camera::Session::frame_of(const Taken& taken) noexcept {
   const V4l2Sys::Mapping& mapping = slots_[taken.slot].mapping;
   DepthFrame frame;
-  frame.depth = {mapping.start, std::min<std::size_t>(taken.buffer.bytesused, mapping.size_bytes)};
+  const std::span<const std::byte> bytes(
+      mapping.start, std::min<std::size_t>(taken.buffer.bytesused, mapping.size_bytes));
+  (config_.gray ? frame.gray : frame.depth) = bytes;
   frame.sequence = sequence_.current();
   frame.gap = std::exchange(missing_, 0U);
   frame.device_ns = stamp_ns(taken.buffer);

@@ -58,6 +58,31 @@ TEST_F(V4l2CameraTest, a_driver_that_answers_with_another_format_is_refused) {
   EXPECT_EQ(sys.num_open() + sys.num_mapped(), 0U);
 }
 
+TEST_F(V4l2CameraTest, a_gray_node_delivers_gray_and_no_depth) {
+  FakeV4l2Sys::Setup setup;
+  setup.formats = {depth::fourcc('G', 'R', 'E', 'Y')};
+  FakeV4l2Sys sys(setup);
+  config_.gray = true;
+  config_.fourcc = depth::fourcc('G', 'R', 'E', 'Y');
+  const auto camera = open(sys);
+  ASSERT_TRUE(camera->start(FrameMode::kEvery).ok());
+
+  const auto lease = camera->next(1s);
+
+  ASSERT_TRUE(lease.ok());
+  EXPECT_TRUE(camera->model().has_gray);
+  EXPECT_GE(lease.value().frame().gray.size(), depth::gray_bytes(camera->model()));
+  EXPECT_TRUE(lease.value().frame().depth.empty());
+}
+
+TEST_F(V4l2CameraTest, a_depth_node_is_refused_as_a_gray_one) {
+  FakeV4l2Sys sys;
+  config_.gray = true;
+
+  EXPECT_EQ(refusal(sys), Errc::kUnsupported);
+  EXPECT_NE(problem_.find("not gray"), std::string::npos) << problem_;
+}
+
 TEST_F(V4l2CameraTest, another_size_than_asked_for_is_refused) {
   FakeV4l2Sys sys;
   config_.width = 640;

@@ -18,6 +18,8 @@ namespace dseam::hal::v4l2 {
 struct V4l2Config {
   std::string device;  ///< Best a name under /dev/v4l/by-id: numbers change with every replug.
   std::uint32_t fourcc = depth::fourcc('Z', '1', '6', ' ');
+  /// A node of gray images, GREY or Y8, to be joined to its depth by PairedCamera.
+  bool gray = false;
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   double frame_rate_hz = 0.0;

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/key_tables.hpp"
+
+namespace dseam::program {
+
+std::vector<Key> camera_keys(LiveSettings& c) {
+  return {
+      {"camera", "views", &c.views, "Frames that are taken of a real camera", "", 1, 16},
+      {"camera", "settle_s", &c.settle_s,
+       "After a view, frames are thrown away for so long: the time to drive to the next", "s", 0,
+       600},
+      {"camera", "gray_device", &c.gray_device,
+       "V4L2: a second node that gives the gray image; empty for none"},
+      {"camera", "width", &c.width, "V4L2: columns; 0 as the device has them", "pixels", 0, 8192},
+      {"camera", "height", &c.height, "V4L2: rows; 0 as the device has them", "pixels", 0, 8192},
+      {"camera", "format", &c.format, "V4L2: format of the depth, up to four characters"},
+      {"camera", "mm_per_count", &c.mm_per_count, "V4L2: millimetres a count of depth", "mm", 0,
+       100},
+      {"camera", "focal_px", &c.focal_px, "V4L2: focal length; the image's middle is on the axis",
+       "pixels", 0, 1e5},
+  };
+}
+
+}  // namespace dseam::program
