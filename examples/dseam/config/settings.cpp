@@ -9,13 +9,12 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 
 std::vector<Key> job_keys(Settings& s) {
-  return {
-      {"job", "method", choice(s.method, {"dseam", "paper"}),
-       "The chain of stages: this project's, or the paper's in the paper's order"},
-      {"job", "max_points", &s.max_points, "More points in the clouds of a command are refused",
-       "points", 1000, 16e6},
-      {"job", "max_seam_points", &s.max_seam_points, "Room for the points of seam.csv", "points",
-       64, 1e6}};
+  return {{"job", "method", choice(s.method, {"dseam", "paper"}),
+           "The chain of stages: this project's, or the paper's in the paper's order"},
+          {"job", "max_points", &s.max_points, "More points in the clouds of a command are refused",
+           "points", 1000, 16e6},
+          {"job", "max_seam_points", &s.max_seam_points, "Room for the points of seam.csv",
+           "points", 64, 1e6}};
 }
 
 std::vector<Key> seam_keys(pipeline::SeamChain::Config& c) {
