@@ -52,6 +52,12 @@ cloud::OrientedBox box_of(const std::optional<RegionOfInterest>& region) noexcep
   return box;
 }
 
+constexpr std::size_t kFinerVoxels = 5;  // At half the size; four, and some for the noise.
+
+bool may_be_too_coarse(seam::Refusal refusal) noexcept {
+  return refusal == seam::Refusal::kNoRing || refusal == seam::Refusal::kOneSurface;
+}
+
 bool any_used(std::span<const splice::SplicedView> views) noexcept {
   return std::any_of(views.begin(), views.end(), [](const splice::SplicedView& view) {
     return view.state == splice::ViewState::kUsed;
@@ -160,20 +166,27 @@ WeldReport WeldPipeline::finish(StageObserver* observer) noexcept {
   return report;
 }
 
-/// The ring in a coarse map of everything that was seen: it says where to look closely.
+/// The ring in a coarse map of everything that was seen: it says where to look closely. A part too
+/// small for the cells shows no ring in them, and is looked at again in finer ones.
 bool WeldPipeline::find_coarsely(WeldReport& report, StageObserver* observer) noexcept {
-  report.coarse = fuse(config_.coarse_cell_mm, config_.region);
-  tell(observer, Stage::kCoarseFuse);
-  if (report.coarse.dropped_full > 0) {
-    report.fault = ScanFault::kMapFull;
-    return false;
+  for (double cell_mm = config_.coarse_cell_mm;; cell_mm *= 0.5) {
+    report.coarse = fuse(cell_mm, config_.region);
+    tell(observer, Stage::kCoarseFuse);
+    if (report.coarse.dropped_full > 0) {
+      report.fault = ScanFault::kMapFull;
+      return false;
+    }
+    SeamInput input = seam_input();
+    input.frames = {};  // The coarse seam needs no edges.
+    input.views = {};
+    report.seam = seam_->run(input, seam_points_);
+    tell(observer, Stage::kCoarseSeam);
+    const std::size_t finer = kFinerVoxels * map_->size();
+    if (!may_be_too_coarse(report.seam.refusal) || 0.5 * cell_mm < config_.fine_cell_mm ||
+        finer > std::min(capacity_.max_voxels, capacity_.seam.max_points)) {
+      return !seam_points_.empty();
+    }
   }
-  SeamInput input = seam_input();
-  input.frames = {};  // The coarse seam needs no edges.
-  input.views = {};
-  report.seam = seam_->run(input, seam_points_);
-  tell(observer, Stage::kCoarseSeam);
-  return !seam_points_.empty();
 }
 
 /// The seam itself, from a fine map of its surroundings and from the frames.

@@ -72,6 +72,22 @@ std::vector<Joint> joints() {
   JointCloudConfig cone = paper_joint();
   cone.nozzle_slope = -0.1;
   joints.push_back({"cone", cone, 0.01});
+  JointCloudConfig large = paper_joint();
+  large.shell_radius_mm = 300.0;
+  large.nozzle_radius_mm = 150.0;
+  large.nozzle_height_mm = 160.0;
+  large.spacing_mm = 2.0;
+  joints.push_back({"large", large, 0.01});
+  JointCloudConfig small = paper_joint();
+  small.shell_radius_mm = 60.0;
+  small.nozzle_radius_mm = 20.0;
+  small.shell_reach_mm = 40.0;
+  joints.push_back({"small", small, 0.02});
+  JointCloudConfig wide = paper_joint();
+  wide.axis_angle_rad = std::numbers::pi / 2.0;
+  wide.eccentricity_mm = 0.0;
+  wide.nozzle_radius_mm = 100.0;
+  joints.push_back({"nearly_as_wide_as_the_shell", wide, 0.02});
   return joints;
 }
 

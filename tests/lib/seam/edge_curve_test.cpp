@@ -116,6 +116,17 @@ TEST(EdgeCurve, too_few_intervals_and_a_short_arc_are_no_edge) {
   EXPECT_FALSE(curve.fit(arc));
 }
 
+TEST(EdgeCurve, does_not_swing_where_nothing_holds_it) {
+  auto intervals = intervals_of(squarish_hole, 0.02, 2);
+  std::erase_if(intervals, [](const EdgeInterval& i) { return i.phi_rad > 0.5 * kTurnRad; });
+  intervals.resize(45);
+  EdgeCurve curve;
+
+  const bool fitted = curve.fit(intervals);
+
+  EXPECT_TRUE(!fitted || deviation(curve, squarish_hole).max_mm < 1.0);
+}
+
 TEST(EdgeCurve, fitting_does_not_allocate) {
   const auto intervals = intervals_of(oval_hole, 0.0, 1);
   EdgeCurve curve;

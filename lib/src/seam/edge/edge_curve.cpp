@@ -126,11 +126,28 @@ EdgeCurve::Fit EdgeCurve::solve(std::span<const EdgeInterval> intervals, const V
       log_likelihood = improve(intervals);
     }
     if (log_likelihood < best.log_likelihood) {
-      return best;
+      break;
     }
     best = {log_likelihood, blur, order, coefficients_};
   }
+  coefficients_ = best.coefficients;
   return best;
+}
+
+// No farther out or in than any interval, at every angle: a curve is free to swing where it is not
+// held.
+bool EdgeCurve::stays_among(std::span<const EdgeInterval> intervals) const noexcept {
+  const auto [lowest, highest] = std::minmax_element(
+      intervals.begin(), intervals.end(), [](const EdgeInterval& a, const EdgeInterval& b) {
+        return a.low_mm + a.high_mm < b.low_mm + b.high_mm;
+      });
+  for (std::size_t i = 0; i < 2 * kSectors; ++i) {
+    const double value = at(std::numbers::pi * static_cast<double>(i) / double{kSectors});
+    if (!(value > lowest->low_mm && value < highest->high_mm)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 bool EdgeCurve::fit(std::span<const EdgeInterval> intervals) noexcept {
@@ -149,10 +166,13 @@ bool EdgeCurve::fit(std::span<const EdgeInterval> intervals) noexcept {
     const Fit found = solve(intervals, start, order);
     const double criterion =
         -2.0 * found.log_likelihood / kKinship + static_cast<double>(order) * std::log(count);
-    if (criterion < least) {
+    if (criterion < least && stays_among(intervals)) {
       least = criterion;
       best = found;
     }
+  }
+  if (least == 1e300) {
+    return false;
   }
   order_ = best.order;
   blur_mm_ = best.blur_mm;

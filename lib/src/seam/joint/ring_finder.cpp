@@ -76,6 +76,9 @@ bool is_coaxial(const RingCandidate& a, const RingCandidate& b) noexcept {
          between.cross(b.axis_base).norm() < kMaxOffAxisMm;
 }
 
+// A large ring is seldom backed all round by chance, but easily along a long stretch.
+double merit_of(const RingCandidate& ring) noexcept { return ring.score_mm * ring.coverage; }
+
 RingFate fate_of(const RingCandidate& ring, int num_below, const RingHint& hint,
                  const Eigen::Vector3d& any_root) noexcept {
   if (num_below > RingFinder::kBins / 2 && ring.coverage < 0.5) {
@@ -167,7 +170,7 @@ void RingFinder::keep(const RingCandidate& ring, const Joint& joint) noexcept {
   for (std::size_t i = 0; i < rings_.size(); ++i) {
     if ((rings_[i].centre_base - ring.centre_base).norm() < near_mm &&
         std::abs(rings_[i].radius_mm - ring.radius_mm) < kMinWallMm) {
-      if (ring.score_mm > rings_[i].score_mm) {
+      if (merit_of(ring) > merit_of(rings_[i])) {
         rings_[i] = ring;
         joints_[i] = joint;
       }
@@ -184,7 +187,7 @@ bool RingFinder::is_bore(const RingCandidate& ring) const noexcept {
   for (const RingCandidate& other : rings_.view()) {
     const double wall = other.radius_mm - ring.radius_mm;
     if (wall > kMinWallMm && wall < kMaxWallMm && is_coaxial(ring, other) &&
-        other.fate == RingFate::kOutscored && kOutside * other.score_mm > ring.score_mm) {
+        other.fate == RingFate::kOutscored && kOutside * merit_of(other) > merit_of(ring)) {
       return true;
     }
   }
@@ -200,7 +203,7 @@ RingFinder::Choice RingFinder::choose(SeamReport& report) noexcept {
   for (std::size_t i = 0; i < rings_.size(); ++i) {
     elsewhere = elsewhere || rings_[i].fate == RingFate::kOutsideRegion ||
                 rings_[i].fate == RingFate::kWrongRadius;
-    if (eligible(i) && (best == rings_.size() || rings_[i].score_mm > rings_[best].score_mm)) {
+    if (eligible(i) && (best == rings_.size() || merit_of(rings_[i]) > merit_of(rings_[best]))) {
       best = i;
     }
   }
@@ -208,15 +211,16 @@ RingFinder::Choice RingFinder::choose(SeamReport& report) noexcept {
   if (best != rings_.size()) {
     choice = {Refusal::kNone, joints_[best]};
     for (std::size_t i = 0; i < rings_.size(); ++i) {
-      if (i != best && eligible(i) && rings_[i].score_mm > kEqualShare * rings_[best].score_mm) {
+      if (i != best && eligible(i) && merit_of(rings_[i]) > kEqualShare * merit_of(rings_[best])) {
         rings_[i].fate = RingFate::kEqual;
         choice.refusal = Refusal::kTwoRings;
       }
     }
     rings_[best].fate = RingFate::kChosen;
   }
-  std::sort(rings_.items().begin(), rings_.items().end(),
-            [](const RingCandidate& a, const RingCandidate& b) { return a.score_mm > b.score_mm; });
+  std::sort(
+      rings_.items().begin(), rings_.items().end(),
+      [](const RingCandidate& a, const RingCandidate& b) { return merit_of(a) > merit_of(b); });
   report.num_candidates =
       static_cast<std::uint32_t>(std::min(rings_.size(), SeamReport::kMaxCandidates));
   std::copy_n(rings_.view().begin(), report.num_candidates, report.candidates.begin());

@@ -49,6 +49,7 @@ class EdgeCurve {
   };
 
   [[nodiscard]] double value_at(const Vector& basis) const noexcept;
+  [[nodiscard]] bool stays_among(std::span<const EdgeInterval> intervals) const noexcept;
   double improve(std::span<const EdgeInterval> intervals) noexcept;
   Fit solve(std::span<const EdgeInterval> intervals, const Vector& start,
             std::size_t order) noexcept;

@@ -25,8 +25,8 @@ struct RingHint {
 /// Forms every ring in which a cylinder or cone leaves another surface, and chooses the seam.
 ///
 /// A ring counts by the length along which both surfaces are seen, the shell outside the nozzle
-/// and the nozzle above the shell: a rim, a bolt hole or a contact with the table has nothing
-/// there.
+/// and the nozzle above the shell, times the share of the turn that this is: a rim, a bolt hole or
+/// a contact with the table has nothing there, and a large ring is seldom seen by chance all round.
 ///
 /// Time:    O(pairs of surfaces * cells).
 class RingFinder {
