@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/seam_run.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "dseam/base/random.hpp"
+#include "dseam/cloud/frame_fuser.hpp"
+#include "dseam/cloud/voxel_map.hpp"
+#include "dseam/hal/sim/cell.hpp"
+#include "dseam/pipeline/weld_pipeline.hpp"
+#include "support/arena_owner.hpp"
+#include "support/seam_accuracy.hpp"
+
+namespace dseam::campaign {
+namespace {
+
+using Eigen::Vector3d;
+using hal::sim::Cell;
+using hal::sim::TruthCurve;
+
+constexpr std::size_t kMaxCells = 262144;
+constexpr float kReachMm = 130.0F;  // Of the fused cloud, from the part's origin.
+
+struct Scan {
+  std::vector<hal::sim::Rendering> renderings;
+  std::vector<depth::DepthImage> frames;
+  std::vector<splice::SplicedView> views;  // With their true poses.
+};
+
+Scan scan_of(const Cell& cell) {
+  Scan scan;
+  scan.renderings.resize(cell.views().size());
+  for (std::size_t i = 0; i < cell.views().size(); ++i) {
+    cell.scan(i, scan.renderings[i]);
+    scan.frames.push_back(hal::sim::image_of(scan.renderings[i], cell.config().scanner));
+    splice::SplicedView view;
+    view.state = splice::ViewState::kUsed;
+    view.T_base_camera = cell.views()[i].T_base_camera;
+    scan.views.push_back(view);
+  }
+  return scan;
+}
+
+void judge(const TruthCurve& truth, std::span<const seam::SeamPoint> points,
+           const geometry::RigidTransform& correction, std::uint64_t seed, Outcome& out) {
+  const test::SeamAccuracy all = test::measure_seam(points, truth, correction);
+  const test::SeamAccuracy measured = test::measure_measured(points, truth, correction);
+  out.coverage = measured.coverage;
+  out.rms_mm = measured.rmse_mm;
+  out.max_mm = measured.max_mm;
+  out.num_points = static_cast<double>(measured.points.size());
+  for (const test::PointError& error : measured.points) {
+    out.mean_lateral_mm += error.lateral_mm / out.num_points;
+    out.mean_normal_mm += error.normal_mm / out.num_points;
+  }
+  const std::size_t drawn = Pcg32(seed, 5).below(static_cast<std::uint32_t>(points.size()));
+  const seam::SeamPoint& point = points[drawn];
+  out.nees_lateral = std::pow(all.points[drawn].lateral_mm / point.sigma_lateral_mm, 2);
+  out.nees_normal = std::pow(all.points[drawn].normal_mm / point.sigma_normal_mm, 2);
+}
+
+/// Fuses the views with their true poses and runs the seam chain alone.
+void find_with_true_poses(const Cell& cell, const Scan& scan, std::uint64_t seed, Outcome& out) {
+  test::ArenaOwner map_owner(cloud::VoxelMap::bytes(kMaxCells) +
+                             cloud::FrameFuser::bytes(cell.config().scanner.width));
+  auto map = cloud::VoxelMap::make({.cell_mm = 1.0F}, kMaxCells, map_owner.arena()).value();
+  auto fuser = cloud::FrameFuser::make({}, cell.config().scanner.width, map_owner.arena()).value();
+  const Eigen::Vector3f centre = cell.config().T_base_part.translation_mm.cast<float>();
+  fuser.set_box({.low_mm = {centre.x() - kReachMm, centre.y() - kReachMm, centre.z() - kReachMm},
+                 .high_mm = {centre.x() + kReachMm, centre.y() + kReachMm, centre.z() + kReachMm}});
+  for (std::size_t i = 0; i < scan.frames.size(); ++i) {
+    (void)fuser.run({scan.frames[i], scan.views[i].T_base_camera, i, {}}, map);
+  }
+  test::ArenaOwner owner(pipeline::SeamChain::bytes({}));
+  pipeline::SeamChain chain = pipeline::SeamChain::make({}, {}, owner.arena()).value();
+  std::vector<seam::SeamPoint> storage(4096);
+  Buffer<seam::SeamPoint> points{std::span<seam::SeamPoint>(storage)};
+  const auto start = std::chrono::steady_clock::now();
+  out.report =
+      chain.run({.cloud_base = map.view(), .frames = scan.frames, .views = scan.views}, points);
+  out.milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  const auto truth = cell.seam();
+  if (truth && !points.empty()) {
+    judge(*truth, points.view(), {}, seed, out);
+  }
+}
+
+/// The whole pipeline, from the frames and the poses that the robot reports.
+void find_with_spliced_poses(const Cell& cell, const Scan& scan, std::uint64_t seed, Outcome& out) {
+  pipeline::WeldPipeline::Capacity capacity;
+  capacity.views.width = cell.config().scanner.width;
+  capacity.views.height = cell.config().scanner.height;
+  test::ArenaOwner owner(pipeline::WeldPipeline::bytes(capacity));
+  auto* pipeline = pipeline::WeldPipeline::make({}, capacity, owner.arena()).value();
+  const auto start = std::chrono::steady_clock::now();
+  for (std::size_t i = 0; i < scan.frames.size(); ++i) {
+    (void)pipeline->add(scan.frames[i], {true, cell.views()[i].T_base_camera_reported}, nullptr);
+  }
+  out.report = pipeline->finish(nullptr).seam;
+  out.milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  const auto truth = cell.seam();
+  if (!truth || pipeline->seam_points().empty()) {
+    return;
+  }
+  std::vector<test::ViewPoses> poses;
+  for (std::size_t i = 0; i < pipeline->views().size(); ++i) {
+    if (pipeline->views()[i].state == splice::ViewState::kUsed) {
+      poses.push_back({cell.views()[i].T_base_camera, pipeline->views()[i].T_base_camera});
+    }
+  }
+  judge(*truth, pipeline->seam_points(), test::base_correction(poses, *truth), seed, out);
+}
+
+}  // namespace
+
+Outcome run(const Row& row, std::uint64_t seed, std::uint32_t shrink) {
+  hal::sim::CellConfig config = cell_of(row, seed);
+  config.scanner.width /= shrink;
+  config.scanner.height /= shrink;
+  const Cell cell = Cell::make(config).value();
+  const Scan scan = scan_of(cell);
+  Outcome out;
+  out.true_gap_mm = config.joint.gap_mm;
+  if (row.poses == Poses::kTrue) {
+    find_with_true_poses(cell, scan, seed, out);
+  } else {
+    find_with_spliced_poses(cell, scan, seed, out);
+  }
+  return out;
+}
+
+}  // namespace dseam::campaign
