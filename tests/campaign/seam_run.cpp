@@ -70,8 +70,10 @@ void find_with_true_poses(const Cell& cell, const Scan& scan, std::uint64_t seed
   auto map = cloud::VoxelMap::make({.cell_mm = 1.0F}, kMaxCells, map_owner.arena()).value();
   auto fuser = cloud::FrameFuser::make({}, cell.config().scanner.width, map_owner.arena()).value();
   const Eigen::Vector3f centre = cell.config().T_base_part.translation_mm.cast<float>();
-  fuser.set_box({.low_mm = {centre.x() - kReachMm, centre.y() - kReachMm, centre.z() - kReachMm},
-                 .high_mm = {centre.x() + kReachMm, centre.y() + kReachMm, centre.z() + kReachMm}});
+  cloud::OrientedBox box;
+  box.low_mm = {centre.x() - kReachMm, centre.y() - kReachMm, centre.z() - kReachMm};
+  box.high_mm = {centre.x() + kReachMm, centre.y() + kReachMm, centre.z() + kReachMm};
+  fuser.set_box(box);
   for (std::size_t i = 0; i < scan.frames.size(); ++i) {
     (void)fuser.run({scan.frames[i], scan.views[i].T_base_camera, i, {}}, map);
   }
@@ -79,9 +81,12 @@ void find_with_true_poses(const Cell& cell, const Scan& scan, std::uint64_t seed
   pipeline::SeamChain chain = pipeline::SeamChain::make({}, {}, owner.arena()).value();
   std::vector<seam::SeamPoint> storage(4096);
   Buffer<seam::SeamPoint> points{std::span<seam::SeamPoint>(storage)};
+  pipeline::SeamInput in;
+  in.cloud_base = map.view();
+  in.frames = scan.frames;
+  in.views = scan.views;
   const auto start = std::chrono::steady_clock::now();
-  out.report =
-      chain.run({.cloud_base = map.view(), .frames = scan.frames, .views = scan.views}, points);
+  out.report = chain.run(in, points);
   out.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   const auto truth = cell.seam();

@@ -2,6 +2,7 @@
 #include "dseam/pipeline/seam_chain.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -29,7 +30,20 @@ bool is_valid(const SeamChain::Config& c) noexcept {
          std::isfinite(c.hand_eye_sigma_mm);
 }
 
-seam::RingHint hint_of(const SeamInput& in) noexcept {
+using Viewpoints = std::array<Eigen::Vector3d, cloud::kMaxViews>;
+
+std::span<const Eigen::Vector3d> viewpoints_of(std::span<const splice::SplicedView> views,
+                                               Viewpoints& storage) noexcept {
+  std::size_t count = 0;
+  for (const splice::SplicedView& view : views) {
+    if (view.state == splice::ViewState::kUsed && count < storage.size()) {
+      storage[count++] = view.T_base_camera.translation_mm;
+    }
+  }
+  return std::span(storage).first(count);
+}
+
+seam::RingHint hint_of(const SeamInput& in, Viewpoints& storage) noexcept {
   seam::RingHint hint;
   if (in.region) {
     hint.has_region = true;
@@ -37,15 +51,7 @@ seam::RingHint hint_of(const SeamInput& in) noexcept {
     hint.region_max = in.region->max_base;
   }
   hint.radius_mm = in.expected_radius_mm.value_or(0.0);
-  double count = 0.0;
-  for (const splice::SplicedView& view : in.views) {
-    if (view.state == splice::ViewState::kUsed) {
-      hint.viewpoint += view.T_base_camera.translation_mm;
-      count += 1.0;
-    }
-  }
-  hint.has_viewpoint = count > 0.0;
-  hint.viewpoint /= std::max(1.0, count);
+  hint.viewpoints = viewpoints_of(in.views, storage);
   return hint;
 }
 
@@ -137,8 +143,9 @@ bool SeamChain::find_joint(const SeamInput& in, seam::SeamReport& report,
     report.refusal = too_few_surfaces(surfaces);
     return false;
   }
-  const seam::RingFinder::Choice choice =
-      rings_.run(cells_.cells(), surfaces, cell_mm_, tolerance_mm_, hint_of(in), report);
+  Viewpoints viewpoints;
+  const seam::RingFinder::Choice choice = rings_.run(
+      cells_.cells(), surfaces, cell_mm_, tolerance_mm_, hint_of(in, viewpoints), report);
   report.refusal = choice.refusal;
   joint = choice.joint;
   return choice.refusal == Refusal::kNone;
@@ -148,6 +155,10 @@ bool SeamChain::fit_joint(const SeamInput& in, const seam::Joint& joint,
                           seam::SeamReport& report) noexcept {
   if (!fit_.run(in.cloud_base.points, joint, report.spacing_mm, tolerance_mm_)) {
     report.refusal = Refusal::kLowCoverage;
+    return false;
+  }
+  if (fit_.num_dropped() > 0) {
+    report.refusal = Refusal::kFull;
     return false;
   }
   seam::describe_joint(fit_, report.joint);
@@ -161,6 +172,10 @@ bool SeamChain::find_edge(const SeamInput& in, seam::SeamReport& report) noexcep
     edges_.run(fit_, report.spacing_mm);
   } else {
     edges_.run(in.frames, in.views, fit_, report.noise_mm);
+  }
+  if (edges_.full()) {
+    report.refusal = Refusal::kFull;
+    return false;
   }
   report.joint.num_edge_intervals = static_cast<std::uint32_t>(edges_.intervals().size());
   const bool has_gap = edge.fit(edges_.intervals()) && seam::describe_gap(edge, report.joint);
@@ -178,7 +193,8 @@ void SeamChain::build_curve(const SeamInput& in, seam::SeamReport& report,
   work.coverage.run(fit_, edge_, report.spacing_mm);
   const double pose_sigma_mm = pose_sigma_of(in.views, fit_.joint().nozzle.point);
   const seam::ErrorSources errors{std::hypot(pose_sigma_mm, config_.scanner_sigma_mm),
-                                  config_.hand_eye_sigma_mm};
+                                  config_.hand_eye_sigma_mm, work.coverage.hidden_gap_mm()};
+  report.joint.hidden_gap_mm = errors.hidden_gap_mm;
   const seam::CurveBuilder::Report built =
       work.builder.run({config_.reference, config_.point_spacing_mm, config_.start_angle_rad,
                         config_.counter_clockwise},

@@ -97,7 +97,8 @@ struct JointReport {
       0.0;                  ///< Distance of the axes; of the nozzle's axis from a sphere's centre.
   int shell_harmonics = 0;  ///< Order of the residual that the points justified.
   int nozzle_harmonics = 0;
-  bool has_gap = false;
+  bool has_gap = false;        ///< The shell's edge was seen.
+  double hidden_gap_mm = 0.0;  ///< It was not, and a gap of up to this is not excluded.
   double mean_gap_mm = 0.0;
   double max_gap_mm = 0.0;
   std::uint32_t num_shell_points = 0;

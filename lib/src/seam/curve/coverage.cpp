@@ -12,6 +12,7 @@ constexpr double kTurnRad = 2.0 * std::numbers::pi;
 constexpr double kNearMm = 3.0;
 constexpr double kMaxDeadBandMm = 4.0;
 constexpr double kSpacingsPerBin = 2.5;
+constexpr double kHiddenSpacings = 1.5;
 constexpr float kNothing = 1e9F;
 
 }  // namespace
@@ -49,9 +50,12 @@ void RingCoverage::run(const JointFit& fit, const EdgeCurve* edge, double spacin
     float& nearest = nozzle_[bin_of(q.phi_rad)];
     nearest = q.trusted ? std::min(nearest, static_cast<float>(q.away_mm)) : nearest;
   }
-  const double shell_band = std::min(median_of(shell_), kMaxDeadBandMm);
-  const double nozzle_band = std::min(median_of(nozzle_), kMaxDeadBandMm);
-  dead_band_mm_ = std::max(shell_band, nozzle_band);
+  const double shell_mm = median_of(shell_);
+  const double nozzle_mm = median_of(nozzle_);
+  const double hidden_mm = shell_mm - nozzle_mm;
+  hidden_gap_mm_ = edge == nullptr && hidden_mm > kHiddenSpacings * spacing_mm ? shell_mm : 0.0;
+  const double shell_band = std::min(shell_mm, kMaxDeadBandMm);
+  const double nozzle_band = std::min(nozzle_mm, kMaxDeadBandMm);
   for (std::size_t i = 0; i < num_bins_; ++i) {
     measured_[i] =
         double{shell_[i]} <= kNearMm + shell_band && double{nozzle_[i]} <= kNearMm + nozzle_band;

@@ -7,30 +7,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "dseam/seam/curve/quality.hpp"
+
 namespace dseam::seam {
 namespace {
 
 constexpr double kTurnRad = 2.0 * std::numbers::pi;
 constexpr int kNewtonSteps = 8;
 constexpr double kPlacedMm = 1e-7;
+constexpr double kGoodEnoughMm = 1e-3;
 constexpr double kStepRad = 2e-3;  // Of the central difference that gives the tangent.
-constexpr double kHighSigmaMm = 0.1;
-constexpr double kMediumSigmaMm = 0.3;
-constexpr double kLowSigmaMm = 1.0;
-constexpr double kSmallHoleRad = 10.0 * std::numbers::pi / 180.0;
-
-Confidence confidence_of(const SeamPoint& point, double hole_rad) noexcept {
-  const double sigma = std::max(point.sigma_lateral_mm, point.sigma_normal_mm);
-  const bool measured = point.source == Source::kMeasured;
-  if (measured && sigma <= kHighSigmaMm) {
-    return Confidence::kHigh;
-  }
-  if ((measured && sigma <= kMediumSigmaMm) ||
-      (hole_rad <= kSmallHoleRad && sigma <= kHighSigmaMm)) {
-    return Confidence::kMedium;
-  }
-  return sigma <= kLowSigmaMm ? Confidence::kLow : Confidence::kNone;
-}
 
 }  // namespace
 
@@ -80,6 +66,7 @@ std::optional<Eigen::Vector3d> CurveBuilder::place(double phi_rad,
   const Eigen::Vector3d aside = std::cos(phi_rad) * frame.v - std::sin(phi_rad) * frame.u;
   const double offset = offset_at(phi_rad);
   Eigen::Vector3d p = guess;
+  double last = 0.0;
   for (int i = 0; i < kNewtonSteps; ++i) {
     Eigen::Matrix3d slopes;
     slopes.row(0) = shell_normal(joint, p);
@@ -92,11 +79,17 @@ std::optional<Eigen::Vector3d> CurveBuilder::place(double phi_rad,
       return std::nullopt;
     }
     p -= step;
-    if (step.norm() < kPlacedMm) {
+    last = step.norm();
+    if (last < kPlacedMm) {
       return p;
     }
   }
-  return p;
+  return last < kGoodEnoughMm ? std::optional(p) : std::nullopt;
+}
+
+// Whether the reference curve rests on edges seen nearby, where it needs them.
+bool CurveBuilder::held_at(double phi_rad) const noexcept {
+  return edge_ == nullptr || config_.reference == ReferenceCurve::kRoot || edge_->held_at(phi_rad);
 }
 
 bool CurveBuilder::measure_length() noexcept {
@@ -135,7 +128,8 @@ SeamPoint CurveBuilder::point_at(double s_mm, const RingCoverage& coverage,
   const double step = config_.counter_clockwise ? kStepRad : -kStepRad;
   SeamPoint point;
   point.s_mm = s_mm;
-  point.p_base = place(phi, guess).value_or(guess);
+  const std::optional<Eigen::Vector3d> placed = place(phi, guess);
+  point.p_base = placed.value_or(guess);
   const Eigen::Vector3d ahead = place(phi + step, guess).value_or(guess);
   const Eigen::Vector3d behind = place(phi - step, guess).value_or(guess);
   point.tangent = (ahead - behind).normalized();
@@ -147,9 +141,10 @@ SeamPoint CurveBuilder::point_at(double s_mm, const RingCoverage& coverage,
   point.dihedral_rad =
       std::numbers::pi - std::acos(std::clamp(point.n_shell.dot(point.n_nozzle), -1.0, 1.0));
   point.gap_mm = edge_ == nullptr ? 0.0 : std::max(0.0, edge_->at(phi));
-  point.source = coverage.measured_at(phi) ? Source::kMeasured : Source::kInterpolated;
+  const bool measured = placed && coverage.measured_at(phi) && held_at(phi);
+  point.source = measured ? Source::kMeasured : Source::kInterpolated;
   estimate_errors(point, phi, errors);
-  point.confidence = confidence_of(point, coverage.hole_at(phi));
+  point.confidence = placed ? confidence_of(point, coverage.hole_at(phi)) : Confidence::kNone;
   return point;
 }
 
@@ -165,7 +160,10 @@ void CurveBuilder::estimate_errors(SeamPoint& point, double phi_rad,
   const double sine_squared = std::max(1e-3, 1.0 - cosine * cosine);
   const bool on_edge = edge_ != nullptr && config_.reference != ReferenceCurve::kRoot;
   const double root = (nozzle + cosine * cosine * shell) / sine_squared;
-  const double lateral = on_edge ? edge_->variance_at(phi_rad) + common : root;
+  // A gap of unknown width is as likely to be anything up to its bound.
+  const double hidden = config_.reference == ReferenceCurve::kRoot ? 0.0 : errors.hidden_gap_mm;
+  const double lateral =
+      (on_edge ? edge_->variance_at(phi_rad) + common : root) + hidden * hidden / 12.0;
   point.sigma_lateral_mm = std::sqrt(lateral + hand_eye);
   point.sigma_normal_mm = std::sqrt(shell + hand_eye);
 }

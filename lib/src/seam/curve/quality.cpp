@@ -11,6 +11,10 @@ namespace {
 
 constexpr double kNearMm = 6.0;
 constexpr double kMinGapMm = 0.25;
+constexpr double kHighSigmaMm = 0.1;
+constexpr double kMediumSigmaMm = 0.3;
+constexpr double kLowSigmaMm = 1.0;
+constexpr double kSmallHoleRad = 10.0 * std::numbers::pi / 180.0;
 
 double offset_of_axes(const Surface& nozzle, const Surface& shell) noexcept {
   const Eigen::Vector3d between = shell.point - nozzle.point;
@@ -48,6 +52,19 @@ ResidualStats stats_of(const JointFit& fit, const JointFit::Side& side, bool she
 }
 
 }  // namespace
+
+Confidence confidence_of(const SeamPoint& point, double hole_rad) noexcept {
+  const double sigma = std::max(point.sigma_lateral_mm, point.sigma_normal_mm);
+  const bool measured = point.source == Source::kMeasured;
+  if (measured && sigma <= kHighSigmaMm) {
+    return Confidence::kHigh;
+  }
+  if ((measured && sigma <= kMediumSigmaMm) ||
+      (hole_rad <= kSmallHoleRad && sigma <= kHighSigmaMm)) {
+    return Confidence::kMedium;
+  }
+  return sigma <= kLowSigmaMm ? Confidence::kLow : Confidence::kNone;
+}
 
 void describe_joint(const JointFit& fit, JointReport& report) noexcept {
   report.shell = fit.joint().shell;

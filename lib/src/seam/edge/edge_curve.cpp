@@ -11,8 +11,11 @@ namespace dseam::seam {
 namespace {
 
 constexpr std::size_t kMinIntervals = 40;
-constexpr std::size_t kSectors = 36;
-constexpr std::size_t kMinSectors = 12;
+constexpr std::size_t kSectors = EdgeCurve::kSectors;
+constexpr std::size_t kMaxUnseen = 9;  // Sectors in a row: a quarter of the turn.
+constexpr double kUnheld =
+    -1.0;  // Slack of a sector in which nothing was seen: free by 1 mm, and marked.
+constexpr double kMaxSlackMm = 8.0;
 constexpr double kWrongShare = 0.01;  // Of the intervals: flying pixels, spatter, a clamp's shadow.
 constexpr double kFirstBlurMm = 0.3;  // Wide at first: the first curve may be anywhere.
 constexpr double kShrink = 0.5;
@@ -45,12 +48,15 @@ std::size_t sector_of(double phi_rad) noexcept {
   return std::min(static_cast<std::size_t>(std::max(0.0, place)), kSectors - 1);
 }
 
-bool all_round(std::span<const EdgeInterval> intervals) noexcept {
-  std::array<bool, kSectors> seen{};
-  for (const EdgeInterval& interval : intervals) {
-    seen[sector_of(interval.phi_rad)] = true;
+// The longest run of sectors, round the turn, in which nothing was seen.
+std::size_t longest_gap(const std::array<double, EdgeCurve::kSectors>& slack_mm) noexcept {
+  std::size_t longest = 0;
+  std::size_t run = 0;
+  for (std::size_t i = 0; i < 2 * slack_mm.size(); ++i) {
+    run = slack_mm[i % slack_mm.size()] == kUnheld ? run + 1 : 0;
+    longest = std::max(longest, run);
   }
-  return static_cast<std::size_t>(std::count(seen.begin(), seen.end(), true)) >= kMinSectors;
+  return std::min(longest, slack_mm.size());
 }
 
 double logistic(double x) noexcept { return 1.0 / (1.0 + std::exp(-x)); }
@@ -152,7 +158,9 @@ bool EdgeCurve::stays_among(std::span<const EdgeInterval> intervals) const noexc
 
 bool EdgeCurve::fit(std::span<const EdgeInterval> intervals) noexcept {
   constexpr std::array<std::size_t, 6> kOrders = {1, 3, 5, 7, 9, 13};
-  if (intervals.size() < kMinIntervals || !all_round(intervals)) {
+  estimate_slack(intervals);
+  const std::size_t unseen = longest_gap(slack_mm_);
+  if (intervals.size() < kMinIntervals || unseen > kMaxUnseen) {
     return false;
   }
   Vector start{};
@@ -163,6 +171,9 @@ bool EdgeCurve::fit(std::span<const EdgeInterval> intervals) noexcept {
   double least = 1e300;
   Fit best;
   for (const std::size_t order : kOrders) {
+    if (order > 1 && (order - 1) * unseen > kSectors) {
+      break;  // Half a wave in what was not seen is free to be anything.
+    }
     const Fit found = solve(intervals, start, order);
     const double criterion =
         -2.0 * found.log_likelihood / kKinship + static_cast<double>(order) * std::log(count);
@@ -179,6 +190,7 @@ bool EdgeCurve::fit(std::span<const EdgeInterval> intervals) noexcept {
   coefficients_ = best.coefficients;
   (void)improve(intervals);
   estimate_covariance(intervals);
+  estimate_slack(intervals);
   return std::all_of(coefficients_.begin(), coefficients_.end(),
                      [](double c) { return std::isfinite(c); });
 }
@@ -208,6 +220,29 @@ void EdgeCurve::estimate_covariance(std::span<const EdgeInterval> intervals) noe
   }
 }
 
+// How far the curve may go in each sector before an interval that it keeps is left: of wide
+// intervals it may be anywhere inside, and their votes say nothing of that.
+void EdgeCurve::estimate_slack(std::span<const EdgeInterval> intervals) noexcept {
+  std::array<double, kSectors> up;
+  std::array<double, kSectors> down;
+  up.fill(0.5 * kMaxSlackMm);
+  down.fill(0.5 * kMaxSlackMm);
+  slack_mm_.fill(kUnheld);
+  for (const EdgeInterval& interval : intervals) {
+    const std::size_t i = sector_of(interval.phi_rad);
+    const double value = at(interval.phi_rad);
+    up[i] = value < interval.high_mm ? std::min(up[i], interval.high_mm - value) : up[i];
+    down[i] = value > interval.low_mm ? std::min(down[i], value - interval.low_mm) : down[i];
+    slack_mm_[i] = up[i] + down[i];
+  }
+}
+
+bool EdgeCurve::held_at(double phi_rad) const noexcept {
+  const std::size_t i = sector_of(phi_rad);
+  return slack_mm_[(i + kSectors - 1) % kSectors] != kUnheld || slack_mm_[i] != kUnheld ||
+         slack_mm_[(i + 1) % kSectors] != kUnheld;
+}
+
 double EdgeCurve::at(double phi_rad) const noexcept { return value_at(basis_at(phi_rad)); }
 
 double EdgeCurve::variance_at(double phi_rad) const noexcept {
@@ -220,7 +255,8 @@ double EdgeCurve::variance_at(double phi_rad) const noexcept {
       sum += b[i] * meat_[i * order_ + k] * b[k];
     }
   }
-  return sum;
+  const double slack = std::abs(slack_mm_[sector_of(phi_rad)]);
+  return sum + slack * slack / 12.0;
 }
 
 }  // namespace dseam::seam

@@ -47,6 +47,7 @@ void EdgeScanner::collect_nearest(const JointFit& fit) noexcept {
 
 void EdgeScanner::run(const JointFit& fit, double spacing_mm) noexcept {
   intervals_.clear();
+  full_ = false;
   collect_nearest(fit);
   // Of points so dense, the k-th nearest to an edge lies k of these steps from it on average.
   const double arc_mm = kTurnRad * fit.joint().nozzle.radius_mm / double{kBins};

@@ -16,8 +16,8 @@ constexpr double kInsideMm = 1.0;  // Deeper than this in the nozzle is its bore
 constexpr double kBehindMm = 60.0;
 constexpr double kMarginMm = 0.1;
 constexpr double kMarginNoises = 4.0;
-constexpr double kShellShare = 0.6;  // Of the margin: between the two a pixel tells nothing.
-constexpr std::size_t kMaxApart = 6;
+constexpr double kShellShare = 0.6;    // Of the margin: between the two a pixel tells nothing.
+constexpr std::size_t kMaxApart = 24;  // A dead band lies between the two.
 constexpr std::size_t kMaxFlying = 3;
 constexpr std::size_t kShellRun = 2;  // Pixels beside the last one.
 constexpr std::uint32_t kStride = 2;
@@ -35,6 +35,7 @@ void EdgeScanner::run(std::span<const depth::DepthImage> frames,
   fit_ = &fit;
   margin_mm_ = kMarginMm + kMarginNoises * std::max(noise_mm, pixel_noise_mm(frames, views));
   intervals_.clear();
+  full_ = false;
   for (std::size_t i = 0; i < std::min(frames.size(), views.size()); ++i) {
     if (views[i].state != splice::ViewState::kUsed) {
       continue;
@@ -247,7 +248,7 @@ void EdgeScanner::try_pair(const depth::DepthImage& frame, const Step& start, st
   const double high_mm = fit_->outside_nozzle(*high) + past_edge_mm(frame, start, shell, *high);
   if (low_mm < high_mm && low_mm > -kInsideMm && high_mm < kReachMm) {
     const double phi = angle_about(fit_->joint().nozzle, fit_->frame(), 0.5 * (*low + *high));
-    (void)intervals_.append({phi, low_mm, high_mm});
+    full_ = !intervals_.append({phi, low_mm, high_mm}) || full_;
   }
 }
 

@@ -18,6 +18,9 @@ constexpr std::size_t kPatchesAway = 4;
 constexpr double kMinPatchWeight = 3.0;
 constexpr double kFullPatchWeight = 8.0;
 constexpr std::size_t kMinPoints = 60;
+constexpr std::size_t kEnoughPoints = 40000;
+constexpr std::size_t kEnoughToRefine = 4000;
+constexpr double kBesideMm = 8.0;  // Within this every point counts: for coverage and edges.
 constexpr int kRefinements = 3;
 constexpr int kModelRounds = 3;
 
@@ -52,31 +55,41 @@ bool JointFit::run(const cloud::CloudView& cloud, const Joint& found, double spa
   return shell_.fitted && nozzle_.fitted;
 }
 
+// All points beside the joint, and of those farther off as many as the surfaces need.
 void JointFit::select(const cloud::CloudView& cloud, double tolerance_mm) noexcept {
   frame_ = frame_of(joint_.nozzle);
   pivot_ = joint_.nozzle.point;
   shell_.points.clear();
   nozzle_.points.clear();
+  num_dropped_ = 0;
+  const std::size_t enough = std::min(kEnoughPoints, std::max<std::size_t>(1, scratch_.size()));
+  const std::size_t stride = 1 + cloud.size() / enough;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3d p(cloud.x[i], cloud.y[i], cloud.z[i]);
     const double outside = signed_distance(joint_.nozzle, p);
-    if (!(outside > -tolerance_mm && outside < band_mm_)) {
+    if (!(outside > -tolerance_mm && outside < band_mm_) ||
+        (outside > kBesideMm && i % stride != 0)) {
       continue;
     }
     const double above = shell_distance(joint_, p);
     const bool on_shell = std::abs(above) < tolerance_mm && outside > 0.0;
-    const bool on_nozzle = outside < tolerance_mm && above > 0.0 && above < band_mm_;
+    const bool on_nozzle = outside < tolerance_mm && above > 0.0 && above < band_mm_ &&
+                           (above < kBesideMm || i % stride == 0);
     if ((!on_shell && !on_nozzle) || shell_normal(joint_, p).dot(joint_.nozzle.axis) < -0.1) {
       continue;  // Not near, or where the nozzle's axis leaves the shell on the other side.
     }
-    const bool to_shell = on_shell && (!on_nozzle || outside > above);
-    NearPoint near;
-    near.from_pivot = (p - pivot_).cast<float>();
-    near.phi_rad = angle_about(joint_.nozzle, frame_, p);
-    near.away_mm = to_shell ? outside : above;
-    near.distance_mm = to_shell ? joint_.shell_sign * above : outside;
-    (void)(to_shell ? shell_ : nozzle_).points.append(near);
+    add(p, outside, above, on_shell && (!on_nozzle || outside > above));
   }
+}
+
+void JointFit::add(const Eigen::Vector3d& p, double outside, double above, bool to_shell) noexcept {
+  NearPoint near;
+  near.from_pivot = (p - pivot_).cast<float>();
+  near.phi_rad = angle_about(joint_.nozzle, frame_, p);
+  near.away_mm = to_shell ? outside : above;
+  near.distance_mm = to_shell ? joint_.shell_sign * above : outside;
+  near.rest_mm = near.distance_mm;
+  num_dropped_ += (to_shell ? shell_ : nozzle_).points.append(near) ? 0U : 1U;
 }
 
 // The median absolute residual of the points clear of the joint.
@@ -84,9 +97,7 @@ double JointFit::scale_of(const Side& side) noexcept {
   std::size_t n = 0;
   for (const NearPoint& q : side.points.view()) {
     if (q.away_mm > inner_mm_) {
-      const Eigen::Vector3d p = pivot_ + q.from_pivot.cast<double>();
-      const double rest = q.distance_mm - side.residual.at(p, q.phi_rad, q.away_mm / band_mm_);
-      scratch_[n++] = static_cast<float>(std::abs(rest));
+      scratch_[n++] = static_cast<float>(std::abs(q.rest_mm));
     }
   }
   if (n < kMinPoints) {
@@ -97,18 +108,29 @@ double JointFit::scale_of(const Side& side) noexcept {
   return static_cast<double>(*middle) + 1e-4;
 }
 
+// Distances from the surface, and what the residual's model leaves of them.
+void JointFit::measure(Side& side, const Surface& surface) const noexcept {
+  for (NearPoint& q : side.points.items()) {
+    const Eigen::Vector3d p = pivot_ + q.from_pivot.cast<double>();
+    q.distance_mm = signed_distance(surface, p);
+    q.rest_mm = q.distance_mm - side.residual.at(p, q.phi_rad, q.away_mm / band_mm_);
+  }
+}
+
 bool JointFit::refine(Side& side, Surface& surface) noexcept {
   side.residual.reset(surface);
+  const std::size_t stride = 1 + side.points.size() / kEnoughToRefine;
   for (int i = 0; i < kRefinements; ++i) {
     const double cut = kTukeyScales * scale_of(side);
     if (cut == 0.0) {
       return false;
     }
     SurfaceEquations equations;
-    for (const NearPoint& q : side.points.view()) {
-      if (q.away_mm > inner_mm_) {
-        const Eigen::Vector3d p = pivot_ + q.from_pivot.cast<double>();
-        equations.add(surface, p, tukey(q.distance_mm / cut));
+    for (std::size_t k = 0; k < side.points.size(); k += stride) {
+      const NearPoint& q = side.points[k];
+      const double weight = q.away_mm > inner_mm_ ? tukey(q.distance_mm / cut) : 0.0;
+      if (weight > 0.0) {
+        equations.add(surface, pivot_ + q.from_pivot.cast<double>(), weight);
       }
     }
     const std::optional<Surface> next = equations.solve(surface);
@@ -116,31 +138,33 @@ bool JointFit::refine(Side& side, Surface& surface) noexcept {
       return false;
     }
     surface = *next;
-    for (NearPoint& q : side.points.items()) {
-      q.distance_mm = signed_distance(surface, pivot_ + q.from_pivot.cast<double>());
-    }
+    measure(side, surface);
   }
   return true;
 }
 
-void JointFit::model(Side& side, const Surface& surface) noexcept {
+// The model's parameters and its deviations are found together; what belongs to the parameters
+// then moves the surface, so that an oval nozzle's axis is its own.
+void JointFit::model(Side& side, Surface& surface) noexcept {
   side.residual.reset(surface);
   side.fitted = false;
+  measure(side, surface);
   for (int round = 0; round < kModelRounds; ++round) {
-    side.scale_mm = 1.4826 * scale_of(side);
-    const double cut = kTukeyScales / 1.4826 * side.scale_mm;
+    const double cut = kTukeyScales * scale_of(side);
     const std::size_t count = collect_patches(side, cut);
     side.fitted = cut > 0.0 && side.residual.fit(patches_.first(count));
     if (!side.fitted) {
       return;
     }
     side.residual.inflate(neighbour_correlation(side, count));
+    if (round + 1 < kModelRounds) {
+      surface = side.residual.move_into(surface);
+    }
+    measure(side, surface);
   }
-  const double cut = kTukeyScales / 1.4826 * side.scale_mm;
+  const double cut = kTukeyScales * scale_of(side);
   for (NearPoint& q : side.points.items()) {
-    const Eigen::Vector3d p = pivot_ + q.from_pivot.cast<double>();
-    const double rest = q.distance_mm - side.residual.at(p, q.phi_rad, q.away_mm / band_mm_);
-    q.trusted = std::abs(rest) < cut;
+    q.trusted = std::abs(q.rest_mm) < cut;
   }
 }
 
@@ -149,20 +173,16 @@ std::size_t JointFit::collect_patches(const Side& side, double cut_mm) noexcept 
   std::fill_n(sums_.begin(), used, PatchSum{});
   const double width = (band_mm_ - inner_mm_) / double{kPatchesAway};
   for (const NearPoint& q : side.points.view()) {
-    if (!(q.away_mm > inner_mm_)) {
+    const double weight = q.away_mm > inner_mm_ ? tukey(q.rest_mm / cut_mm) : 0.0;
+    if (!(weight > 0.0)) {
       continue;
     }
-    const Eigen::Vector3d p = pivot_ + q.from_pivot.cast<double>();
-    const double rest = q.distance_mm - side.residual.at(p, q.phi_rad, q.away_mm / band_mm_);
     const double turn = (q.phi_rad / kTurnRad + 0.5) * static_cast<double>(patches_round_);
     const auto column = std::min(static_cast<std::size_t>(std::max(0.0, turn)), patches_round_ - 1);
     const auto row =
         std::min(static_cast<std::size_t>((q.away_mm - inner_mm_) / width), kPatchesAway - 1);
-    const double weight = tukey(rest / cut_mm);
     PatchSum& sum = sums_[row * patches_round_ + column];
-    sum.point += weight * p;
-    sum.turn_cos += weight * std::cos(q.phi_rad);
-    sum.turn_sin += weight * std::sin(q.phi_rad);
+    sum.point += weight * (pivot_ + q.from_pivot.cast<double>());
     sum.away += weight * q.away_mm / band_mm_;
     sum.distance += weight * q.distance_mm;
     sum.weight += weight;
@@ -171,9 +191,9 @@ std::size_t JointFit::collect_patches(const Side& side, double cut_mm) noexcept 
   for (std::size_t i = 0; i < used; ++i) {
     const PatchSum& s = sums_[i];
     if (s.weight >= kMinPatchWeight) {
-      patches_[count++] = {s.point / s.weight, std::atan2(s.turn_sin, s.turn_cos),
-                           s.away / s.weight, s.distance / s.weight,
-                           std::min(1.0, s.weight / kFullPatchWeight)};
+      const Eigen::Vector3d mean = s.point / s.weight;
+      patches_[count++] = {mean, angle_about(joint_.nozzle, frame_, mean), s.away / s.weight,
+                           s.distance / s.weight, std::min(1.0, s.weight / kFullPatchWeight)};
     }
   }
   return count;

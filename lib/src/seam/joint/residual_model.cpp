@@ -88,9 +88,11 @@ ResidualModel::Columns ResidualModel::columns_of(const Order& order) const noexc
 void ResidualModel::accumulate(std::span<const Patch> patches) noexcept {
   std::fill(normal_.begin(), normal_.end(), 0.0);
   fitted_[0].right = {};
+  fitted_[0].squares = 0.0;
   Row row;
   for (const Patch& patch : patches) {
     row_at(patch.mean, patch.phi_rad, patch.away, row);
+    fitted_[0].squares += patch.weight * patch.distance_mm * patch.distance_mm;
     for (std::size_t i = 0; i < kColumns; ++i) {
       const double scaled = patch.weight * row[i];
       fitted_[0].right[i] += scaled * patch.distance_mm;
@@ -122,15 +124,27 @@ bool ResidualModel::solve(const Columns& columns, Row& solution) noexcept {
   return true;
 }
 
-double ResidualModel::squares(std::span<const Patch> patches, const Row& solution) const noexcept {
-  double sum = 0.0;
-  Row row;
-  for (const Patch& patch : patches) {
-    row_at(patch.mean, patch.phi_rad, patch.away, row);
-    const double rest = patch.distance_mm - dot(row, solution);
-    sum += patch.weight * rest * rest;
+// What a solution leaves of the patches' squares, from the sums alone.
+double ResidualModel::squares(const Columns& columns, const Row& solution) const noexcept {
+  double sum = fitted_[0].squares;
+  for (std::size_t i = 0; i < columns.count; ++i) {
+    const std::size_t a = columns.index[i];
+    double product = -2.0 * fitted_[0].right[a];
+    for (std::size_t k = 0; k < columns.count; ++k) {
+      const std::size_t b = columns.index[k];
+      product += solution[b] * normal_[std::max(a, b) * kColumns + std::min(a, b)];
+    }
+    sum += solution[a] * product;
   }
-  return sum;
+  return std::max(0.0, sum);
+}
+
+Surface ResidualModel::move_into(const Surface& surface) noexcept {
+  SurfaceVector step;
+  std::copy_n(fitted_[0].solution.begin(), kMaxSurfaceParameters, step.data());
+  fitted_[0].surface = stepped(surface, -step);
+  std::fill_n(fitted_[0].solution.begin(), kMaxSurfaceParameters, 0.0);
+  return fitted_[0].surface;
 }
 
 bool ResidualModel::fit(std::span<const Patch> patches) noexcept {
@@ -154,7 +168,7 @@ bool ResidualModel::fit(std::span<const Patch> patches) noexcept {
     if (n < 2.0 * p + 4.0 || !solve(columns, solution)) {
       continue;
     }
-    const double rest = squares(patches, solution) + 1e-12;
+    const double rest = squares(columns, solution) + 1e-12;
     const double criterion = n * std::log(rest / n) + p * std::log(n);
     if (criterion < best) {
       best = criterion;
@@ -170,6 +184,14 @@ bool ResidualModel::fit(std::span<const Patch> patches) noexcept {
 double ResidualModel::at(const Eigen::Vector3d& p, double phi_rad, double away) const noexcept {
   if (!fitted_[0].valid) {
     return 0.0;
+  }
+  if (fitted_[0].harmonics < 0) {  // The model alone, by far the most frequent case.
+    const SurfaceVector j = distance_jacobian(fitted_[0].surface, p);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < kMaxSurfaceParameters; ++i) {
+      sum += j[static_cast<Eigen::Index>(i)] * fitted_[0].solution[i];
+    }
+    return sum;
   }
   Row row;
   row_at(p, phi_rad, away, row);

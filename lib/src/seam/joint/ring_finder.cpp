@@ -16,11 +16,11 @@ constexpr double kEqualShare = 0.80;       // Scores closer than this are equall
 constexpr double kRadiusTolerance = 0.15;  // Of the expected radius.
 constexpr double kMinJointCosine = 0.97;   // Surfaces nearer than 14 degrees do not make a joint.
 
-constexpr double kMaxWallMm = 20.0;  // Of a nozzle.
+constexpr double kMaxWallShare = 0.6;  // Of a nozzle's radius.
 constexpr double kMinWallMm = 1.5;
 constexpr double kOutside = 1.6;  // What an outside is preferred to a bore by.
 constexpr double kCoaxialCosine = 0.99;
-constexpr double kMaxOffAxisMm = 5.0;
+constexpr double kMaxOffAxisShare = 0.1;  // Of the radius.
 constexpr double kOtherSideCosine = -0.1;
 
 // What lies around a ring, bin by bin of the angle about the nozzle.
@@ -73,7 +73,7 @@ bool contains(const RingHint& hint, const Eigen::Vector3d& p) noexcept {
 bool is_coaxial(const RingCandidate& a, const RingCandidate& b) noexcept {
   const Eigen::Vector3d between = a.centre_base - b.centre_base;
   return std::abs(a.axis_base.dot(b.axis_base)) > kCoaxialCosine &&
-         between.cross(b.axis_base).norm() < kMaxOffAxisMm;
+         between.cross(b.axis_base).norm() < kMaxOffAxisShare * std::max(a.radius_mm, b.radius_mm);
 }
 
 // A large ring is seldom backed all round by chance, but easily along a long stretch.
@@ -129,7 +129,8 @@ void RingFinder::consider(std::span<const Cell> cells, const Joint& given, doubl
       joint.shell_sign * joint.shell.axis.dot(joint.nozzle.axis) < 0.0) {
     joint.shell_sign = -1.0;
   }
-  if (hint.has_viewpoint && shell_distance(joint, hint.viewpoint) < 0.0) {
+  const auto is_outside = [&](const Eigen::Vector3d& p) { return shell_distance(joint, p) >= 0.0; };
+  if (!hint.viewpoints.empty() && std::ranges::none_of(hint.viewpoints, is_outside)) {
     return;  // Nobody saw the shell from that side.
   }
   const NozzleFrame frame = frame_of(joint.nozzle);
@@ -186,7 +187,7 @@ void RingFinder::keep(const RingCandidate& ring, const Joint& joint) noexcept {
 bool RingFinder::is_bore(const RingCandidate& ring) const noexcept {
   for (const RingCandidate& other : rings_.view()) {
     const double wall = other.radius_mm - ring.radius_mm;
-    if (wall > kMinWallMm && wall < kMaxWallMm && is_coaxial(ring, other) &&
+    if (wall > kMinWallMm && wall < kMaxWallShare * other.radius_mm && is_coaxial(ring, other) &&
         other.fate == RingFate::kOutscored && kOutside * merit_of(other) > merit_of(ring)) {
       return true;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dseam/seam/surface/surface_finder.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -33,6 +34,10 @@ double fit_of(const Surface& surface, const Cell& cell, double tolerance_mm,
   return std::abs(outward_normal(surface, cell.mean).dot(cell.normal)) > cosine ? inside : 0.0;
 }
 
+bool is_larger(const FoundSurface& a, const FoundSurface& b) noexcept {
+  return a.support > b.support;
+}
+
 }  // namespace
 
 void SurfaceFinder::run(std::span<const Cell> cells, double cell_mm, double tolerance_mm) noexcept {
@@ -44,7 +49,7 @@ void SurfaceFinder::run(std::span<const Cell> cells, double cell_mm, double tole
   }
   const double least = std::max(kMinSupport, kMinShare * static_cast<double>(n));
   double place = 0.0;
-  for (int attempt = 0; attempt < kMaxAttempts && n > 0 && !surfaces_.full(); ++attempt) {
+  for (int attempt = 0; attempt < kMaxAttempts && n > 0; ++attempt) {
     place = std::fmod(place + kGolden, 1.0);
     std::size_t seed = static_cast<std::size_t>(place * static_cast<double>(n)) % n;
     std::size_t passed = 0;
@@ -52,13 +57,27 @@ void SurfaceFinder::run(std::span<const Cell> cells, double cell_mm, double tole
       seed = (seed + 1) % n;
     }
     if (passed == n) {
-      return;
+      break;
     }
     const FoundSurface best = best_from(cells, cells[seed], cell_mm);
     explained_[seed] = true;  // Whatever comes of it, it is no seed again.
-    if (best.support >= least && surfaces_.append(best)) {
+    if (best.support >= least) {
+      keep(best);
       explain(cells, best.surface);
     }
+  }
+  std::sort(surfaces_.items().begin(), surfaces_.items().end(), is_larger);
+}
+
+// Small planes of clutter do not keep a nozzle out of a full list.
+void SurfaceFinder::keep(const FoundSurface& found) noexcept {
+  if (surfaces_.append(found)) {
+    return;
+  }
+  const auto weakest =
+      std::max_element(surfaces_.items().begin(), surfaces_.items().end(), is_larger);
+  if (is_larger(found, *weakest)) {
+    *weakest = found;
   }
 }
 

@@ -20,7 +20,9 @@ class RingCoverage {
   /// `edge` is nullptr without a gap.
   void run(const JointFit& fit, const EdgeCurve* edge, double spacing_mm) noexcept;
   [[nodiscard]] bool measured_at(double phi_rad) const noexcept;
-  [[nodiscard]] double dead_band_mm() const noexcept { return dead_band_mm_; }
+  /// How wide a gap may be of which no edge was seen: how much farther from the joint the shell
+  /// begins than the nozzle does. A dead band takes as much of both; 0 within the points' spacing.
+  [[nodiscard]] double hidden_gap_mm() const noexcept { return hidden_gap_mm_; }
   /// Width of the hole around an angle; 0 where it was measured.
   [[nodiscard]] double hole_at(double phi_rad) const noexcept;
   /// Fills coverage, largest hole and the list of holes.
@@ -36,7 +38,7 @@ class RingCoverage {
   Distances shell_{};
   Distances nozzle_{};
   Distances sorted_{};
-  double dead_band_mm_ = 0.0;
+  double hidden_gap_mm_ = 0.0;
 };
 
 }  // namespace dseam::seam

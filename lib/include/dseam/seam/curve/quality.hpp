@@ -16,6 +16,9 @@ struct QualityLimits {
   double max_sigma_mm = 1.0;
 };
 
+/// High: measured and both sigmas at most 0.1 mm. Medium: measured and at most 0.3 mm, or in a hole
+/// of at most 10 degrees and at most 0.1 mm. Low: at most 1 mm. None: the rest.
+[[nodiscard]] Confidence confidence_of(const SeamPoint& point, double hole_rad) noexcept;
 /// Radii, angle and offset of the axes, and what the fit used.
 void describe_joint(const JointFit& fit, JointReport& report) noexcept;
 /// Mean and largest gap; false where it is too small to be one.

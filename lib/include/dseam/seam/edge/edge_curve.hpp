@@ -27,16 +27,18 @@ struct EdgeInterval {
 class EdgeCurve {
  public:
   static constexpr std::size_t kMaxHarmonics = 6;
+  static constexpr std::size_t kSectors = 36;
   static constexpr std::size_t kMaxOrder = 2 * kMaxHarmonics + 1;
   using Vector = std::array<double, kMaxOrder>;
 
-  /// False when the intervals are too few, or lie at too few angles.
+  /// False when the intervals are too few, or leave a quarter of the turn without one.
   bool fit(std::span<const EdgeInterval> intervals) noexcept;
 
   [[nodiscard]] double at(double phi_rad) const noexcept;
+  /// Of at(): what the votes disagree about, and how far the intervals leave the curve free.
   [[nodiscard]] double variance_at(double phi_rad) const noexcept;
-  /// How far the edge itself scatters about the curve, as the votes tell.
-  [[nodiscard]] double blur_mm() const noexcept { return blur_mm_; }
+  /// Whether an interval lies within about ten degrees.
+  [[nodiscard]] bool held_at(double phi_rad) const noexcept;
   [[nodiscard]] std::size_t harmonics() const noexcept { return (order_ - 1) / 2; }
 
  private:
@@ -53,10 +55,12 @@ class EdgeCurve {
   double improve(std::span<const EdgeInterval> intervals) noexcept;
   Fit solve(std::span<const EdgeInterval> intervals, const Vector& start,
             std::size_t order) noexcept;
+  void estimate_slack(std::span<const EdgeInterval> intervals) noexcept;
   void estimate_covariance(std::span<const EdgeInterval> intervals) noexcept;
 
   std::size_t order_ = 1;
   double blur_mm_ = 1.0;
+  std::array<double, kSectors> slack_mm_{};
   Vector coefficients_{};
   Storage normal_{};  // Its Cholesky factor after improve().
   Storage meat_{};

@@ -44,6 +44,8 @@ class EdgeScanner {
   /// The same from the fused points alone: where the shell's points thin out towards the nozzle
   /// although the nozzle's own points go on. Less exact, by a share of the points' spacing.
   void run(const JointFit& fit, double spacing_mm) noexcept;
+  /// True when there were more intervals than room for them.
+  [[nodiscard]] bool full() const noexcept { return full_; }
   [[nodiscard]] std::span<const EdgeInterval> intervals() const noexcept {
     return intervals_.view();
   }
@@ -93,6 +95,7 @@ class EdgeScanner {
   const JointFit* fit_ = nullptr;
   geometry::RigidTransform T_base_camera_;
   double margin_mm_ = 0.1;
+  bool full_ = false;
   Buffer<EdgeInterval> intervals_;
   std::span<Pixel> line_;
   std::span<Nearest> nearest_;

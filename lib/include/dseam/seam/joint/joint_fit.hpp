@@ -16,9 +16,10 @@ namespace dseam::seam {
 struct NearPoint {
   Eigen::Vector3f from_pivot;
   double phi_rad = 0.0;
-  double away_mm = 0.0;  ///< Distance from the other surface.
-  double distance_mm = 0.0;
-  bool trusted = false;  ///< Within the robust cut of the fitted surface.
+  double away_mm = 0.0;      ///< Distance from the other surface.
+  double distance_mm = 0.0;  ///< From the fitted surface...
+  double rest_mm = 0.0;      ///< ...and from the surface with its deviation.
+  bool trusted = false;      ///< Within the robust cut of the fitted surface.
 };
 
 /// Refines the two surfaces of a joint on the points near it, and models how they deviate there.
@@ -36,7 +37,6 @@ class JointFit {
   struct Side {
     Buffer<NearPoint> points;
     ResidualModel residual;
-    double scale_mm = 0.0;  ///< Robust scatter of single points.
     bool fitted = false;
   };
 
@@ -59,6 +59,9 @@ class JointFit {
   [[nodiscard]] const Side& shell() const noexcept { return shell_; }
   [[nodiscard]] const Side& nozzle() const noexcept { return nozzle_; }
 
+  /// Points for which there was no room.
+  [[nodiscard]] std::uint32_t num_dropped() const noexcept { return num_dropped_; }
+
   /// Distance of a point from the fitted shell or nozzle, deviation included.
   [[nodiscard]] double above_shell(const Eigen::Vector3d& p) const noexcept;
   [[nodiscard]] double outside_nozzle(const Eigen::Vector3d& p) const noexcept;
@@ -68,16 +71,16 @@ class JointFit {
  private:
   struct PatchSum {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();
-    double turn_cos = 0.0;
-    double turn_sin = 0.0;
     double away = 0.0;
     double distance = 0.0;
     double weight = 0.0;
   };
 
   void select(const cloud::CloudView& cloud, double tolerance_mm) noexcept;
+  void add(const Eigen::Vector3d& p, double outside, double above, bool to_shell) noexcept;
+  void measure(Side& side, const Surface& surface) const noexcept;
   bool refine(Side& side, Surface& surface) noexcept;
-  void model(Side& side, const Surface& surface) noexcept;
+  void model(Side& side, Surface& surface) noexcept;
   double scale_of(const Side& side) noexcept;
   std::size_t collect_patches(const Side& side, double cut_mm) noexcept;
   double neighbour_correlation(const Side& side, std::size_t count) const noexcept;
@@ -88,6 +91,7 @@ class JointFit {
   double band_mm_ = 0.0;
   double inner_mm_ = 0.0;
   std::size_t patches_round_ = 1;
+  std::uint32_t num_dropped_ = 0;
   Side shell_;
   Side nozzle_;
   std::span<float> scratch_;

@@ -57,8 +57,8 @@ class ResidualModel {
                                    double away) const noexcept;
   /// The highest harmonic in use; -1: the model alone.
   [[nodiscard]] int harmonics() const noexcept { return fitted_[0].harmonics; }
-  /// Scatter of the patches about model and residual.
-  [[nodiscard]] double scatter_mm() const noexcept { return fitted_[0].scatter_mm; }
+  /// Takes the change of the model's own parameters out of the residual; the surface after it.
+  [[nodiscard]] Surface move_into(const Surface& surface) noexcept;
   /// Multiplies all variances: what neighbouring patches have in common makes them count less.
   void inflate(double factor) noexcept { fitted_[0].inflation = factor; }
 
@@ -78,6 +78,7 @@ class ResidualModel {
     Row right{};
     Row solution{};
     Columns columns;
+    double squares = 0.0;  // Of the patches' distances, weighted.
     double scatter_mm = 0.0;
     double inflation = 1.0;
     int harmonics = -1;
@@ -88,7 +89,7 @@ class ResidualModel {
   void accumulate(std::span<const Patch> patches) noexcept;
   [[nodiscard]] Columns columns_of(const Order& order) const noexcept;
   bool solve(const Columns& columns, Row& solution) noexcept;
-  [[nodiscard]] double squares(std::span<const Patch> patches, const Row& solution) const noexcept;
+  [[nodiscard]] double squares(const Columns& columns, const Row& solution) const noexcept;
 
   std::span<double> normal_;
   std::span<double> factor_;

@@ -17,9 +17,8 @@ struct RingHint {
   bool has_region = false;
   Eigen::Vector3d region_min = Eigen::Vector3d::Zero();
   Eigen::Vector3d region_max = Eigen::Vector3d::Zero();
-  double radius_mm = 0.0;  ///< 0: any.
-  bool has_viewpoint = false;
-  Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  ///< Mean of the cameras' places.
+  double radius_mm = 0.0;                         ///< 0: any.
+  std::span<const Eigen::Vector3d> viewpoints{};  ///< The cameras' places, where they are known.
 };
 
 /// Forms every ring in which a cylinder or cone leaves another surface, and chooses the seam.

@@ -48,6 +48,7 @@ class SurfaceFinder {
   FoundSurface best_from(std::span<const Cell> cells, const Cell& seed, double cell_mm) noexcept;
   FoundSurface grown(std::span<const Cell> cells, const Cell& seed, double patch_mm,
                      Surface surface) const noexcept;
+  void keep(const FoundSurface& found) noexcept;
   void explain(std::span<const Cell> cells, const Surface& surface) noexcept;
 
   double tolerance_mm_ = 1.0;
