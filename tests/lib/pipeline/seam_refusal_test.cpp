@@ -91,6 +91,75 @@ TEST(SeamRefusal, a_reference_curve_that_the_joint_does_not_have_is_named) {
   }
 }
 
+TEST(SeamRefusal, two_equal_rings_are_named_and_both_shown) {
+  JointCloud both(paper_joint());
+  both.transform(Eigen::Matrix3d::Identity(), Eigen::Vector3d(400.0, 0.0, 0.0), 1.0);
+  const JointCloud first(paper_joint());
+  const auto& points = first.view().points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    both.add({double{points.x[i]}, double{points.y[i]}, double{points.z[i]} + 200.0});
+  }
+  SeamFinder finder;
+
+  const SeamReport report = finder.find(both);
+
+  EXPECT_EQ(report.refusal, Refusal::kTwoRings) << name(report.refusal);
+  ASSERT_GE(report.num_candidates, 2U);
+  EXPECT_EQ(report.candidates[0].fate, seam::RingFate::kChosen);
+  EXPECT_EQ(report.candidates[1].fate, seam::RingFate::kEqual);
+  EXPECT_TRUE(finder.points().empty());
+}
+
+TEST(SeamRefusal, of_two_equal_rings_a_region_chooses_one) {
+  JointCloud both(paper_joint());
+  both.transform(Eigen::Matrix3d::Identity(), Eigen::Vector3d(400.0, 0.0, 0.0), 1.0);
+  const JointCloud first(paper_joint());
+  const auto& points = first.view().points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    both.add({double{points.x[i]}, double{points.y[i]}, double{points.z[i]} + 200.0});
+  }
+  SeamInput in{.cloud_base = both.view()};
+  in.region = RegionOfInterest{{-150.0, -150.0, 0.0}, {150.0, 150.0, 400.0}};
+  SeamFinder finder;
+
+  const SeamReport report = finder.find(in);
+
+  EXPECT_TRUE(report.weld()) << name(report.refusal);
+}
+
+TEST(SeamRefusal, a_nozzle_that_hangs_above_its_shell_is_no_ring) {
+  JointCloudConfig shell_alone = paper_joint();
+  shell_alone.nozzle = false;
+  JointCloudConfig nozzle_alone = paper_joint();
+  nozzle_alone.shell_seen = false;
+  JointCloud apart(shell_alone);
+  const JointCloud nozzle(nozzle_alone);
+  const auto& points = nozzle.view().points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    apart.add({double{points.x[i]}, double{points.y[i]}, double{points.z[i]} + 120.0});
+  }
+  SeamFinder finder;
+
+  EXPECT_EQ(finder.find(apart).refusal, Refusal::kNoRing);
+}
+
+TEST(SeamRefusal, a_seam_less_certain_than_asked_for_is_named) {
+  SeamFinder finder({.max_sigma_mm = 1e-4});
+
+  EXPECT_EQ(finder.find(JointCloud(paper_joint())).refusal, Refusal::kUncertain);
+}
+
+TEST(SeamRefusal, more_points_beside_the_joint_than_there_is_room_for_are_named) {
+  const JointCloud cloud(paper_joint());
+  const SeamChain::Capacity little{.max_points = 3000, .max_edge_intervals = 1000};
+  test::ArenaOwner owner(SeamChain::bytes(little));
+  SeamChain chain = SeamChain::make({}, little, owner.arena()).value();
+  std::vector<seam::SeamPoint> storage(4096);
+  Buffer<seam::SeamPoint> out{std::span<seam::SeamPoint>(storage)};
+
+  EXPECT_EQ(chain.run(SeamInput{.cloud_base = cloud.view()}, out).refusal, Refusal::kFull);
+}
+
 TEST(SeamRefusal, a_full_output_is_named) {
   const JointCloud cloud(paper_joint());
   test::ArenaOwner owner(SeamChain::bytes({}));

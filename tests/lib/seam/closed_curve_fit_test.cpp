@@ -146,6 +146,29 @@ TEST(ClosedCurveFit, a_line_a_heap_and_an_open_arc_are_refused_by_name) {
   EXPECT_EQ(fitter.fit({}).refusal, Refusal::kEmptyCloud);
 }
 
+TEST(ClosedCurveFit, a_hole_in_the_points_is_interpolated_and_nothing_else) {
+  std::vector<Eigen::Vector3d> points;
+  for (const Eigen::Vector3d& p : saddle(400)) {
+    if (std::atan2(p.y(), p.x()) < 1.0 || std::atan2(p.y(), p.x()) > 1.6) {
+      points.push_back(p);
+    }
+  }
+  Fitter fitter;
+
+  const ClosedCurveFit::Report report = fitter.fit(points);
+
+  EXPECT_EQ(report.refusal, Refusal::kNone);
+  for (const SeamPoint& point : fitter.curve()) {
+    const double phi = std::atan2(point.p_base.y(), point.p_base.x());
+    if (std::abs(phi - 1.3) < 0.25) {
+      EXPECT_EQ(point.source, Source::kInterpolated);
+      EXPECT_LT(point.confidence, Confidence::kHigh);
+    } else if (std::abs(phi - 1.3) > 0.35) {
+      EXPECT_EQ(point.source, Source::kMeasured);
+    }
+  }
+}
+
 TEST(ClosedCurveFit, run_does_not_allocate) {
   const std::vector<Eigen::Vector3d> points = saddle(200);
   Fitter fitter;

@@ -105,11 +105,11 @@ TEST(EdgeCurve, its_error_is_as_large_as_it_predicts) {
   EXPECT_GE(inside, 86);
 }
 
-TEST(EdgeCurve, too_few_intervals_and_a_short_arc_are_no_edge) {
+TEST(EdgeCurve, too_few_intervals_and_a_third_of_the_turn_unseen_are_no_edge) {
   const auto intervals = intervals_of(round_hole, 0.0, 1);
   const std::span<const EdgeInterval> few = std::span(intervals).first(30);
   auto arc = intervals;
-  std::erase_if(arc, [](const EdgeInterval& i) { return i.phi_rad > 0.25 * kTurnRad; });
+  std::erase_if(arc, [](const EdgeInterval& i) { return i.phi_rad > 0.66 * kTurnRad; });
   EdgeCurve curve;
 
   EXPECT_FALSE(curve.fit(few));
@@ -125,6 +125,30 @@ TEST(EdgeCurve, does_not_swing_where_nothing_holds_it) {
   const bool fitted = curve.fit(intervals);
 
   EXPECT_TRUE(!fitted || deviation(curve, squarish_hole).max_mm < 1.0);
+}
+
+TEST(EdgeCurve, an_edge_anywhere_in_wide_intervals_is_as_uncertain_as_they_are_wide) {
+  std::vector<EdgeInterval> intervals;
+  for (int i = 0; i < 400; ++i) {
+    intervals.push_back({kTurnRad * i / 400.0, 2.0, 4.0});  // A dead band of 2 mm beside the edge.
+  }
+  EdgeCurve curve;
+
+  ASSERT_TRUE(curve.fit(intervals));
+
+  EXPECT_NEAR(std::sqrt(curve.variance_at(1.0)), 2.0 / std::sqrt(12.0), 0.1);
+}
+
+TEST(EdgeCurve, what_it_only_bridges_is_not_held_and_uncertain) {
+  auto intervals = intervals_of(oval_hole, 0.0, 1);
+  std::erase_if(intervals, [](const EdgeInterval& i) { return std::abs(i.phi_rad - 2.0) < 0.6; });
+  EdgeCurve curve;
+
+  ASSERT_TRUE(curve.fit(intervals));
+
+  EXPECT_FALSE(curve.held_at(2.0));
+  EXPECT_TRUE(curve.held_at(4.0));
+  EXPECT_GT(curve.variance_at(2.0), 10.0 * curve.variance_at(4.0));
 }
 
 TEST(EdgeCurve, fitting_does_not_allocate) {

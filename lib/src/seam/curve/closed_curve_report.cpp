@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "dseam/seam/curve/closed_curve_fit.hpp"
+#include "dseam/seam/curve/quality.hpp"
 #include "dseam/seam/joint/joint.hpp"
 #include "dseam/seam/surface/surface_fit.hpp"
 
@@ -12,7 +13,7 @@ namespace dseam::seam {
 namespace {
 
 constexpr double kTurnRad = 2.0 * std::numbers::pi;
-constexpr std::size_t kSteps = 1024;
+constexpr double kSpacingsPerBin = 2.5;  // A stretch this long without a point is a hole.
 constexpr int kSurfaceSteps = 40;
 
 }  // namespace
@@ -150,6 +151,37 @@ void ClosedCurveFit::describe(Report& report) noexcept {
   report.rms_mm = report.rms_mm.cwiseSqrt();
 }
 
+// A point speaks for as much of the curve as lies between two on average.
+void ClosedCurveFit::mark_seen() noexcept {
+  auto& seen = work_[0].seen;
+  seen.fill(false);
+  const double share = kSpacingsPerBin / static_cast<double>(std::max<std::size_t>(1, count_));
+  const auto reach = static_cast<std::size_t>(std::ceil(0.5 * share * double{kSteps}));
+  for (const Station& s : stations_.first(count_)) {
+    if (s.used) {
+      const double turn = s.t_rad / kTurnRad;
+      const auto middle = static_cast<std::size_t>((turn - std::floor(turn)) * double{kSteps});
+      for (std::size_t i = 0; i <= 2 * reach; ++i) {
+        seen[(middle + kSteps - reach + i) % kSteps] = true;
+      }
+    }
+  }
+}
+
+// Width of the stretch without a point around a step; 0 where there is one.
+double ClosedCurveFit::hole_at(std::size_t step) const noexcept {
+  const auto& seen = work_[0].seen;
+  std::size_t ahead = 0;
+  while (ahead < kSteps && !seen[(step + ahead) % kSteps]) {
+    ++ahead;
+  }
+  std::size_t behind = 0;
+  while (ahead > 0 && behind < kSteps && !seen[(step + kSteps - 1 - behind) % kSteps]) {
+    ++behind;
+  }
+  return kTurnRad * static_cast<double>(ahead + behind) / double{kSteps};
+}
+
 void ClosedCurveFit::write_curve(double spacing_mm, Report& report,
                                  Buffer<SeamPoint>& out) noexcept {
   auto& lengths = work_[0].lengths;
@@ -162,6 +194,7 @@ void ClosedCurveFit::write_curve(double spacing_mm, Report& report,
     lengths[i + 1] = lengths[i] + t_of(1.0) * (4.0 * middle + ends) / 6.0;  // Simpson.
   }
   report.length_mm = lengths[kSteps];
+  mark_seen();
   const double count = std::max(16.0, std::round(report.length_mm / spacing_mm));
   report.refusal = count <= static_cast<double>(out.capacity()) ? Refusal::kNone : Refusal::kFull;
   // Against the turn when the parameter runs clockwise about the nozzle.
@@ -184,8 +217,9 @@ void ClosedCurveFit::write_curve(double spacing_mm, Report& report,
         std::numbers::pi - std::acos(std::clamp(point.n_shell.dot(point.n_nozzle), -1.0, 1.0));
     point.sigma_lateral_mm = report.lateral.rms_mm * std::sqrt(share);
     point.sigma_normal_mm = report.normal.rms_mm * std::sqrt(share);
-    point.source = Source::kMeasured;
-    point.confidence = point.sigma_lateral_mm < 0.1 ? Confidence::kHigh : Confidence::kMedium;
+    const double hole = hole_at(k);
+    point.source = hole > 0.0 ? Source::kInterpolated : Source::kMeasured;
+    point.confidence = confidence_of(point, hole);
     (void)out.append(point);
   }
 }

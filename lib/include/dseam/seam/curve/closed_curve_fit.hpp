@@ -66,10 +66,12 @@ class ClosedCurveFit {
     double off_mm = 0.0;
     bool used = true;
   };
+  static constexpr std::size_t kSteps = 1024;
   struct Work {
     std::array<double, kCoefficients * kCoefficients> normal{};
     std::array<Basis, 3> series{};
-    std::array<double, 1025> lengths{};
+    std::array<double, kSteps + 1> lengths{};
+    std::array<bool, kSteps> seen{};  // Steps of the parameter at which a used point lies.
   };
   struct Jet {
     Eigen::Vector3d p, d1, d2;
@@ -85,6 +87,8 @@ class ClosedCurveFit {
   void describe(Report& report) noexcept;
   void find_hole(Report& report) noexcept;
   void write_curve(double spacing_mm, Report& report, Buffer<SeamPoint>& out) noexcept;
+  void mark_seen() noexcept;
+  [[nodiscard]] double hole_at(std::size_t step) const noexcept;
   [[nodiscard]] Jet at(double t_rad) const noexcept;
   [[nodiscard]] ResidualStats stats_of(std::size_t count) noexcept;
 
