@@ -86,9 +86,30 @@ SpliceChain::ViewReport SpliceChain::add(const depth::DepthImage& frame,
     return report;
   }
   extract(frame, report);
-  place(reported, report);
-  ++num_views_;
+  stores_[num_views_].reported = reported;
+  const std::size_t view = num_views_++;
+  place(view, report);
+  if (report.live.state != LiveSplicer::State::kUnplaced) {
+    place_pending();
+  }
   return report;
+}
+
+// A view that shares too few markers with those before it may share more with those after it.
+void SpliceChain::place_pending() noexcept {
+  for (std::size_t round = 0; round < num_views_; ++round) {
+    bool placed_one = false;
+    for (std::size_t view = 0; view < num_views_; ++view) {
+      if (!inputs_[view].placed) {
+        ViewReport report;
+        place(view, report);
+        placed_one = placed_one || inputs_[view].placed;
+      }
+    }
+    if (!placed_one) {
+      return;
+    }
+  }
 }
 
 void SpliceChain::extract(const depth::DepthImage& frame, ViewReport& report) noexcept {
@@ -97,7 +118,6 @@ void SpliceChain::extract(const depth::DepthImage& frame, ViewReport& report) no
   std::fill(store.landmarks.begin(), store.landmarks.end(), kNoLandmark);
   const std::size_t n = store.markers.size();
   for (std::size_t i = 0; i < n; ++i) {
-    places_[i] = store.markers[i].p_camera;
     hidden_[i] = store.markers[i].ellipse;
   }
   report.patches = patches_.run(frame, hidden_.first(n), store.patches);
@@ -109,11 +129,12 @@ void SpliceChain::extract(const depth::DepthImage& frame, ViewReport& report) no
 }
 
 // By the markers when they are sure, else by the report; then surface against surface.
-void SpliceChain::place(const splice::ReportedPose& reported, ViewReport& report) noexcept {
-  splice::PosedView& view = posed_[num_views_];
-  const bool by_markers = match(reported, report);
+void SpliceChain::place(std::size_t index, ViewReport& report) noexcept {
+  splice::PosedView& view = posed_[index];
+  const splice::ReportedPose& reported = stores_[index].reported;
+  const bool by_markers = match(index, report);
   view.place(by_markers ? report.match.T_a_b : reported.T_base_camera);
-  const bool first = num_views_ == 0;
+  const bool first = index == 0;
   const bool guessed = by_markers || reported.known || first;
   report.live.T_base_camera = view.T_base_camera;
   if (guessed) {
@@ -122,16 +143,21 @@ void SpliceChain::place(const splice::ReportedPose& reported, ViewReport& report
   }
   const bool stands = first || by_markers || report.live.state == LiveSplicer::State::kSpliced;
   view.used = stands;
-  enter_landmarks(stands);
-  inputs_[num_views_] = {view.field, reported, view.T_base_camera, guessed};
+  if (stands) {
+    enter_landmarks(index);
+  }
+  inputs_[index] = {view.field, reported, view.T_base_camera, guessed};
 }
 
-bool SpliceChain::match(const splice::ReportedPose& reported, ViewReport& report) noexcept {
-  const auto in_view =
-      std::span<const Eigen::Vector3d>(places_.first(stores_[num_views_].markers.size()));
-  if (num_views_ == 0 || in_view.size() < 3 || landmarks_.size() < 3) {
+bool SpliceChain::match(std::size_t view, ViewReport& report) noexcept {
+  const std::span<const markers::Marker> seen = stores_[view].markers.view();
+  const splice::ReportedPose& reported = stores_[view].reported;
+  if (view == 0 || seen.size() < 3 || landmarks_.size() < 3) {
     return false;
   }
+  std::transform(seen.begin(), seen.end(), places_.begin(),
+                 [](const markers::Marker& m) { return m.p_camera; });
+  const auto in_view = std::span<const Eigen::Vector3d>(places_.first(seen.size()));
   if (reported.known) {
     report.match = matcher_->run(landmarks_.view(), in_view, reported.T_base_camera);
   }
@@ -143,12 +169,12 @@ bool SpliceChain::match(const splice::ReportedPose& reported, ViewReport& report
 }
 
 // A marker near a known one is that one; of the others each is new.
-void SpliceChain::enter_landmarks(bool placed) noexcept {
+void SpliceChain::enter_landmarks(std::size_t view) noexcept {
   constexpr double kSameMm = 0.8;
-  ViewStore& store = stores_[num_views_];
+  ViewStore& store = stores_[view];
   const std::size_t known = landmarks_.size();
-  for (std::size_t i = 0; placed && i < store.markers.size(); ++i) {
-    const Eigen::Vector3d p = posed_[num_views_].T_base_camera * store.markers[i].p_camera;
+  for (std::size_t i = 0; i < store.markers.size(); ++i) {
+    const Eigen::Vector3d p = posed_[view].T_base_camera * store.markers[i].p_camera;
     double nearest = kSameMm;
     for (std::size_t k = 0; k < known; ++k) {
       const double distance = (landmarks_[k] - p).norm();

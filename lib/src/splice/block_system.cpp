@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace dseam::splice {
 
@@ -61,6 +62,11 @@ void BlockSystem::solve() noexcept {
   std::transform(g_.begin(), g_.begin() + static_cast<std::ptrdiff_t>(size_), step_.begin(),
                  [](double g) { return -g; });
   solve_in_place(step_);
+}
+
+double BlockSystem::decrement() const noexcept {
+  return -std::inner_product(g_.begin(), g_.begin() + static_cast<std::ptrdiff_t>(size_),
+                             step_.begin(), 0.0);
 }
 
 void BlockSystem::invert() noexcept {

@@ -27,6 +27,7 @@ struct Adjustment {
   double sigma_mm = 0.0;
   double marker_variance_factor = 1.0;
   double ties_per_independent = 1.0;
+  double decrement = 0.0;  ///< The last step's squared length in sigmas.
 
   [[nodiscard]] std::size_t bowl_at() const noexcept { return 6 * inputs.size(); }
   [[nodiscard]] std::size_t num_used() const noexcept {

@@ -74,6 +74,7 @@ class SpliceChain {
 
  private:
   struct ViewStore {
+    splice::ReportedPose reported;
     std::span<splice::SurfacePatch> patches;
     Buffer<markers::Marker> markers;
     std::span<std::uint16_t> landmarks;  ///< Of each marker; kNoLandmark where it has none.
@@ -84,9 +85,10 @@ class SpliceChain {
       : config_(config), capacity_(capacity), patches_(config.patches), live_(config.live) {}
   [[nodiscard]] bool fits(const depth::DepthImage& frame) const noexcept;
   void extract(const depth::DepthImage& frame, ViewReport& report) noexcept;
-  void place(const splice::ReportedPose& reported, ViewReport& report) noexcept;
-  [[nodiscard]] bool match(const splice::ReportedPose& reported, ViewReport& report) noexcept;
-  void enter_landmarks(bool placed) noexcept;
+  void place(std::size_t view, ViewReport& report) noexcept;
+  void place_pending() noexcept;
+  [[nodiscard]] bool match(std::size_t view, ViewReport& report) noexcept;
+  void enter_landmarks(std::size_t view) noexcept;
   void collect_sights() noexcept;
 
   Config config_;

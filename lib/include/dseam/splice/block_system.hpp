@@ -55,6 +55,8 @@ class BlockSystem {
   void solve() noexcept;
   /// The inverse after factorise().
   void invert() noexcept;
+  /// How much the squared error falls by the step: g^T H^-1 g.
+  [[nodiscard]] double decrement() const noexcept;
   [[nodiscard]] std::span<const double> step() const noexcept { return step_.first(size_); }
   [[nodiscard]] double inverse(std::size_t row, std::size_t column) const noexcept {
     return inverse_[row * size_ + column];
