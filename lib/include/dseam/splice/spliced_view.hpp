@@ -23,6 +23,7 @@ enum class ViewState : std::uint8_t {
   kUnobservable,  ///< Its geometry leaves a direction free and nothing else pins it.
   kEmpty,         ///< No valid depth.
   kDuplicate,     ///< The same frame as an earlier view.
+  kAmbiguous,     ///< It fits in several places.
 };
 
 /// A view after the adjustment of all views together.
