@@ -11,6 +11,7 @@
 #include "files/output_folder.hpp"
 #include "input/json_reader.hpp"
 #include "report/svg_chart.hpp"
+#include "scan/marker_stations.hpp"
 
 namespace dseam::program {
 namespace {
@@ -84,7 +85,10 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   Settings settings;
   invocation.configure(settings);
   OutputFolder folder(options.out);
-  const auto result = calibration::calibrate_hand_eye(read_pairs(options.pairs), settings.hand_eye);
+  const bool is_set = std::filesystem::is_directory(options.pairs);
+  const std::vector<calibration::PosePair> pairs =
+      is_set ? read_stations(options.pairs) : read_pairs(options.pairs);
+  const auto result = calibration::calibrate_hand_eye(pairs, settings.hand_eye);
   if (!result.ok()) {
     throw Failure(ExitCode::kInput, options.pairs.string() + ": " + name(result.error()));
   }
@@ -104,7 +108,9 @@ ExitCode run(const Options& options, const Invocation& invocation) {
 void add_calibrate(CLI::App& app, Invocation& invocation) {
   auto* command = app.add_subcommand("calibrate", "where the camera sits on the robot's flange");
   auto options = std::make_shared<Options>();
-  command->add_option("pairs", options->pairs, "pairs of poses (JSON)")->required();
+  command
+      ->add_option("pairs", options->pairs, "pairs of poses (JSON), or a scan set of fixed markers")
+      ->required();
   command->add_option("--out", options->out, "folder for hand_eye.json")->required();
   command->callback([options, &invocation] {
     invocation.run = [options](const Invocation& invoked) { return run(*options, invoked); };

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <memory>
+#include <vector>
 
 #include "command/commands.hpp"
 #include "files/hand_eye_file.hpp"
+#include "job/cloud_splice_job.hpp"
 #include "job/products.hpp"
 #include "job/scan_job.hpp"
 #include "scan/replay_scan.hpp"
@@ -13,7 +15,7 @@ namespace dseam::program {
 namespace {
 
 struct Options {
-  std::filesystem::path set;
+  std::vector<std::filesystem::path> inputs;
   std::filesystem::path hand_eye;
   std::filesystem::path out;
 };
@@ -24,12 +26,27 @@ std::size_t num_used(std::span<const splice::SplicedView> views) {
       [](const splice::SplicedView& view) { return view.state == splice::ViewState::kUsed; }));
 }
 
-ExitCode run(const Options& options, const Invocation& invocation) {
+ExitCode splice_clouds(const Options& options, const Invocation& invocation) {
+  OutputFolder folder(options.out);
+  JobReport job;
+  job.command = "splice";
+  for (const std::filesystem::path& file : options.inputs) {
+    job.input += (job.input.empty() ? "" : ", ") + file.string();
+  }
+  CloudSpliceJob clouds(options.inputs, invocation.mm_per_unit());
+  const std::size_t used = clouds.run(job);
+  job.weld = used == options.inputs.size();
+  job.reason =
+      std::to_string(used) + " of " + std::to_string(options.inputs.size()) + " clouds spliced";
+  write_products(job, folder);
+  print_summary(job, folder);
+  return job.weld ? ExitCode::kDone : ExitCode::kRefused;
+}
+
+ExitCode splice_set(const Options& options, const Invocation& invocation) {
   Settings settings;
   invocation.configure(settings);
-  if (!std::filesystem::is_directory(options.set)) {
-    throw Failure(ExitCode::kInput, options.set.string() + ": no such scan set");
-  }
+  const std::filesystem::path& set = options.inputs.front();
   std::optional<geometry::RigidTransform> T_flange_camera;
   if (!options.hand_eye.empty()) {
     T_flange_camera = read_hand_eye(options.hand_eye).T_flange_camera;
@@ -37,12 +54,12 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   OutputFolder folder(options.out);
   const std::atomic<bool>& interrupted = watch_for_interrupt();
   Progress progress;
-  ReplayScan source(options.set);
+  ReplayScan source(set);
   const auto views = take_views(source, T_flange_camera, interrupted, progress);
 
   JobReport job;
   job.command = "splice";
-  job.input = options.set.string();
+  job.input = set.string();
   ScanJob scan(settings, views);
   (void)scan.run(views, job);  // Whether there is a seam is not the question here.
   const std::size_t used = num_used(job.views);
@@ -55,12 +72,21 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   return used > 0 ? ExitCode::kDone : ExitCode::kRefused;
 }
 
+ExitCode run(const Options& options, const Invocation& invocation) {
+  const bool is_set = std::filesystem::is_directory(options.inputs.front());
+  if (is_set && options.inputs.size() > 1) {
+    throw Failure(ExitCode::kUsage, "one scan set, or clouds; not both");
+  }
+  return is_set ? splice_set(options, invocation) : splice_clouds(options, invocation);
+}
+
 }  // namespace
 
 void add_splice(CLI::App& app, Invocation& invocation) {
-  auto* command = app.add_subcommand("splice", "poses and merged cloud of a scan set");
+  auto* command =
+      app.add_subcommand("splice", "poses and merged cloud of a scan set, or of clouds");
   auto options = std::make_shared<Options>();
-  command->add_option("set", options->set, "scan set")->required();
+  command->add_option("input", options->inputs, "scan set, or PLY and PCD files")->required();
   command->add_option("--hand-eye", options->hand_eye, "hand_eye.json of dseam calibrate");
   command->add_option("--out", options->out, "folder for the results")->required();
   command->callback([options, &invocation] {

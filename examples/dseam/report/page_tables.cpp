@@ -37,7 +37,8 @@ std::string count_text(double count) {
 }  // namespace
 
 const char* name(splice::ViewState state) noexcept {
-  constexpr std::array kNames{"used", "no overlap", "contradicts", "unobservable", "empty"};
+  constexpr std::array kNames{"used",  "no overlap", "contradicts", "unobservable",
+                              "empty", "duplicate",  "ambiguous"};
   return kNames[static_cast<std::size_t>(state)];
 }
 

@@ -134,7 +134,7 @@ void SpliceChain::place(std::size_t index, ViewReport& report) noexcept {
   const splice::ReportedPose& reported = stores_[index].reported;
   const bool by_markers = match(index, report);
   view.place(by_markers ? report.match.T_a_b : reported.T_base_camera);
-  const bool first = index == 0;
+  const bool first = can_be_first(index);
   const bool guessed = by_markers || reported.known || first;
   report.live.T_base_camera = view.T_base_camera;
   if (guessed) {
@@ -149,10 +149,20 @@ void SpliceChain::place(std::size_t index, ViewReport& report) noexcept {
   inputs_[index] = {view.field, reported, view.T_base_camera, guessed};
 }
 
+// The frame is that of the first view which shows something to splice to.
+bool SpliceChain::can_be_first(std::size_t view) const noexcept {
+  const auto seen = posed_.first(num_views_);
+  const std::span<const splice::SurfacePatch> patches = posed_[view].field.patches;
+  return std::none_of(seen.begin(), seen.end(), [](const auto& other) { return other.used; }) &&
+         (stores_[view].markers.size() >= 3 ||
+          std::any_of(patches.begin(), patches.end(),
+                      [](const splice::SurfacePatch& p) { return p.num_pixels > 0; }));
+}
+
 bool SpliceChain::match(std::size_t view, ViewReport& report) noexcept {
   const std::span<const markers::Marker> seen = stores_[view].markers.view();
   const splice::ReportedPose& reported = stores_[view].reported;
-  if (view == 0 || seen.size() < 3 || landmarks_.size() < 3) {
+  if (seen.size() < 3 || landmarks_.size() < 3) {
     return false;
   }
   std::transform(seen.begin(), seen.end(), places_.begin(),
@@ -210,6 +220,12 @@ void SpliceChain::collect_sights() noexcept {
 }
 
 NetworkReport SpliceChain::finish(Buffer<splice::SplicedView>& out) noexcept {
+  for (std::size_t view = 0; view < num_views_; ++view) {
+    if (!posed_[view].used) {
+      ViewReport report;
+      place(view, report);
+    }
+  }
   collect_sights();
   return network_->run(inputs_.first(num_views_), sights_.view(), out);
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "splice/surface_ties.hpp"
+#include "splice/network/surface_ties.hpp"
 
 namespace dseam::splice {
 

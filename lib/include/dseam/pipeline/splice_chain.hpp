@@ -87,6 +87,7 @@ class SpliceChain {
   void extract(const depth::DepthImage& frame, ViewReport& report) noexcept;
   void place(std::size_t view, ViewReport& report) noexcept;
   void place_pending() noexcept;
+  [[nodiscard]] bool can_be_first(std::size_t view) const noexcept;
   [[nodiscard]] bool match(std::size_t view, ViewReport& report) noexcept;
   void enter_landmarks(std::size_t view) noexcept;
   void collect_sights() noexcept;

@@ -35,7 +35,7 @@ struct MarkerSight {
 
 enum class NetworkState : std::uint8_t {
   kAdjusted,
-  kNoViews,
+  kNoViews,       ///< None was given, or those that are left contradict each other.
   kOneView,       ///< There is nothing to adjust; the view stands as reported.
   kNotConverged,  ///< The last step was still large after the last iteration.
   kSingular,      ///< A direction is free in all views together.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "splice/network_adjustment.hpp"
+#include "splice/network/network_adjustment.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -208,12 +208,18 @@ bool Adjustment::leave_out_worst() noexcept {
       }
     }
   }
-  if (which == inputs.size() || num_used() <= 2) {
+  if (which == inputs.size()) {
     return false;
   }
-  views[which].used = false;
-  out[which].state = ViewState::kContradicts;
-  return true;
+  // Of two that disagree nobody can say which one is right.
+  const bool both = num_used() <= 2;
+  for (std::size_t v = 0; v < inputs.size(); ++v) {
+    if (views[v].used && (both || v == which)) {
+      views[v].used = false;
+      out[v].state = ViewState::kContradicts;
+    }
+  }
+  return !both;
 }
 
 // Only the largest set of views that hang together is one workpiece.

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "dseam/geometry/symmetric_matrix.hpp"
-#include "splice/network_adjustment.hpp"
+#include "splice/network/network_adjustment.hpp"
 
 namespace dseam::splice {
 namespace {
@@ -126,6 +126,11 @@ NetworkReport ViewNetwork::run(std::span<const NetworkView> views,
     adjustment.adjust();
   }
   adjustment.leave_out_unlinked();
+  if (adjustment.num_used() == 0) {
+    adjustment.report.state = NetworkState::kNoViews;
+    adjustment.fill_views();
+    return adjustment.report;
+  }
   adjustment.adjust();
   if (adjustment.report.state != NetworkState::kSingular) {
     adjustment.fill_covariances();

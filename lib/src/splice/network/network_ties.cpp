@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "splice/network_ties.hpp"
+#include "splice/network/network_ties.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>

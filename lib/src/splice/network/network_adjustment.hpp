@@ -6,8 +6,8 @@
 #include <span>
 
 #include "dseam/splice/view_network.hpp"
-#include "splice/network_ties.hpp"
-#include "splice/surface_ties.hpp"
+#include "splice/network/network_ties.hpp"
+#include "splice/network/surface_ties.hpp"
 
 namespace dseam::splice {
 

@@ -6,7 +6,7 @@
 
 #include "dseam/splice/block_system.hpp"
 #include "dseam/splice/view_network.hpp"
-#include "splice/surface_ties.hpp"
+#include "splice/network/surface_ties.hpp"
 
 namespace dseam::splice {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "splice/surface_ties.hpp"
+#include "splice/network/surface_ties.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
