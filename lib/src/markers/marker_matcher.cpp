@@ -46,14 +46,24 @@ struct MarkerMatcher::Search {
   bool contradicting = false;  // Count only what `best` says otherwise.
   std::uint32_t most = 0;
   std::size_t tried = 0;
+  std::size_t compared = 0;
 
+  /// The bound on time: what is left is not looked at.
+  [[nodiscard]] bool cut_short() const noexcept {
+    return tried >= kMaxHypotheses || compared >= kMaxCompared;
+  }
   [[nodiscard]] bool near_prior(std::size_t i, std::size_t k) const noexcept {
     return !prior || (*prior * b[k] - a[i]).norm() < config.prior_gate_mm;
   }
 
+  void restart() noexcept {
+    most = 0;
+    tried = 0;
+    compared = 0;
+  }
   void over_all() noexcept {
     for (std::size_t i = 0; i < a.size(); ++i) {
-      for (std::size_t j = i + 1; j < a.size(); ++j) {
+      for (std::size_t j = i + 1; j < a.size() && !cut_short(); ++j) {
         over_sides(i, j);
       }
     }
@@ -64,6 +74,7 @@ struct MarkerMatcher::Search {
     if (!(side > kShortestSideMm)) {
       return;
     }
+    compared += b.size() * b.size();
     for (std::size_t k = 0; k < b.size(); ++k) {
       for (std::size_t l = 0; l < b.size(); ++l) {
         if (k != l && near_prior(i, k) && near_prior(j, l) &&
@@ -75,16 +86,18 @@ struct MarkerMatcher::Search {
   }
   // The third marker comes after the second, so that a triangle is tried once a labelling.
   void over_thirds(std::size_t i, std::size_t j, std::size_t k, std::size_t l) noexcept {
-    for (std::size_t m = j + 1; m < a.size(); ++m) {
+    compared += (a.size() - j) * b.size();
+    for (std::size_t m = j + 1; m < a.size() && !cut_short(); ++m) {
       const double to_i = (a[m] - a[i]).norm();
       const double to_j = (a[m] - a[j]).norm();
       for (std::size_t n = 0; n < b.size(); ++n) {
         if (n == k || n == l || std::abs((b[n] - b[k]).norm() - to_i) > config.tolerance_mm ||
             std::abs((b[n] - b[l]).norm() - to_j) > config.tolerance_mm ||
-            is_thin(a[i], a[j], a[m]) || !near_prior(m, n) || tried >= kMaxHypotheses) {
+            is_thin(a[i], a[j], a[m]) || !near_prior(m, n)) {
           continue;
         }
         ++tried;
+        compared += a.size() * b.size();
         try_triangle({i, j, m}, {k, l, n});
       }
     }
@@ -201,8 +214,7 @@ MatchReport MarkerMatcher::run(Points a, Points b,
   search.over_all();
   const std::uint32_t most_mirrored = search.most;
   search.mirrored = false;
-  search.most = 0;
-  search.tried = 0;
+  search.restart();
   std::fill(search.best.begin(), search.best.end(), kNone);
   search.over_all();
   report.num_pairs = search.most;
@@ -214,11 +226,12 @@ MatchReport MarkerMatcher::run(Points a, Points b,
     report.state = all_on_a_line(a, b) ? MatchState::kCollinear : MatchState::kTooFew;
     return report;
   }
+  report.cut_short = search.cut_short();
   search.contradicting = true;
-  search.most = 0;
-  search.tried = 0;
+  search.restart();
   search.over_all();
   report.num_runner_up = search.most;
+  report.cut_short = report.cut_short || search.cut_short();
   refine(a, b, report);
   return report;
 }
@@ -274,7 +287,7 @@ MatchState MarkerMatcher::judge(bool determined, const MatchReport& report) cons
   if (!determined) {
     return MatchState::kCollinear;
   }
-  if (report.num_pairs < report.num_runner_up + config_.min_lead) {
+  if (report.cut_short || report.num_pairs < report.num_runner_up + config_.min_lead) {
     return MatchState::kSymmetric;
   }
   const bool good =

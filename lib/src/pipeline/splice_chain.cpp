@@ -86,7 +86,12 @@ SpliceChain::ViewReport SpliceChain::add(const depth::DepthImage& frame,
     return report;
   }
   extract(frame, report);
-  stores_[num_views_].reported = reported;
+  // What is no rigid transform (scaled, left-handed, not finite) says nothing.
+  report.reported_refused =
+      reported.known && !geometry::rigid_from_parts(reported.T_base_camera.rotation,
+                                                    reported.T_base_camera.translation_mm)
+                             .ok();
+  stores_[num_views_].reported = report.reported_refused ? splice::ReportedPose{} : reported;
   const std::size_t view = num_views_++;
   place(view, report);
   if (report.live.state != LiveSplicer::State::kUnplaced) {

@@ -5,86 +5,16 @@
 
 #include <vector>
 
-#include "dseam/hal/sim/cell.hpp"
-#include "support/allocation_counter.hpp"
-#include "support/arena_owner.hpp"
-#include "support/seam_accuracy.hpp"
+#include "spliced_scan.hpp"
 
 namespace dseam::pipeline {
 namespace {
 
-// A cell's frames, rendered once for all tests that look at them.
-struct Scan {
-  hal::sim::CellConfig config;
-  std::vector<hal::sim::Rendering> renderings;
-  std::vector<depth::DepthImage> frames;
-  std::vector<splice::ReportedPose> reported;
-  std::vector<geometry::RigidTransform> truth;
-  hal::sim::TruthCurve seam;
-};
-
-Scan scan(const hal::sim::CellConfig& config) {
-  Scan out;
-  out.config = config;
-  const auto cell = hal::sim::Cell::make(config);
-  out.renderings.resize(config.views.count);
-  for (std::size_t v = 0; v < config.views.count; ++v) {
-    cell.value().scan(v, out.renderings[v]);
-    out.frames.push_back(hal::sim::image_of(out.renderings[v], config.scanner));
-    out.reported.push_back({true, cell.value().views()[v].T_base_camera_reported});
-    out.truth.push_back(cell.value().views()[v].T_base_camera);
-  }
-  out.seam = *cell.value().seam();
-  return out;
-}
-
-hal::sim::CellConfig with_markers() { return {}; }
-
-hal::sim::CellConfig without_markers() {
-  hal::sim::CellConfig config;
-  config.markers.count = 0;
-  return config;
-}
-
-const Scan& marked_scan() {
-  static const Scan kScan = scan(with_markers());
-  return kScan;
-}
-
-const Scan& bare_scan() {
-  static const Scan kScan = scan(without_markers());
-  return kScan;
-}
-
-struct Spliced {
-  splice::NetworkReport report;
-  std::vector<splice::SplicedView> views;
-};
-
-Spliced splice_all(std::span<const depth::DepthImage> frames,
-                   std::span<const splice::ReportedPose> reported) {
-  SpliceChain::Capacity capacity;
-  test::ArenaOwner owner(SpliceChain::bytes(capacity));
-  auto chain = SpliceChain::make({}, capacity, owner.arena());
-  std::vector<splice::SplicedView> storage(cloud::kMaxViews);
-  Buffer<splice::SplicedView> out(storage);
-
-  const test::AllocationCounter allocations;
-  const splice::NetworkReport report = chain.value().run(frames, reported, out);
-  EXPECT_EQ(allocations.count(), 0U);
-
-  return {report, {out.view().begin(), out.view().end()}};
-}
-
-double splice_error_mm(const Scan& scan, const Spliced& spliced) {
-  std::vector<test::ViewPoses> poses;
-  for (std::size_t v = 0; v < spliced.views.size(); ++v) {
-    if (spliced.views[v].state == splice::ViewState::kUsed) {
-      poses.push_back({scan.truth[v], spliced.views[v].T_base_camera});
-    }
-  }
-  return test::splice_error(poses, scan.seam).rms_mm;
-}
+using test::bare_scan;
+using test::marked_scan;
+using test::splice_all;
+using test::splice_error_mm;
+using test::Spliced;
 
 TEST(SpliceChain, views_with_markers_are_spliced_to_hundredths) {
   const Spliced spliced = splice_all(marked_scan().frames, marked_scan().reported);

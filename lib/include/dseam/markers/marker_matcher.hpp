@@ -24,7 +24,7 @@ enum class MatchState : std::uint8_t {
   kTooFew,     ///< Fewer than three markers agree.
   kCollinear,  ///< Those that agree lie on a line.
   kClustered,  ///< They lie so close together that the far side would be guessed.
-  kSymmetric,  ///< Another assignment fits as well.
+  kSymmetric,  ///< Another assignment fits as well, or there are too many to rule that out.
   kMirrored,   ///< They agree only after a reflection.
 };
 
@@ -33,6 +33,7 @@ struct MatchReport {
   geometry::RigidTransform T_a_b;
   std::uint32_t num_pairs = 0;      ///< Of the best assignment, also when it is refused.
   std::uint32_t num_runner_up = 0;  ///< Of the best one that contradicts it.
+  bool cut_short = false;           ///< Not all assignments were tried.
   double rms_mm = 0.0;
   double spread_mm = 0.0;          ///< Second largest standard deviation of their places.
   double error_at_reach_mm = 0.0;  ///< Predicted, at `Config::reach_mm` from their centre.
@@ -44,7 +45,8 @@ struct MatchReport {
 /// hypothesis; the one under which most markers agree wins, if no other comes near.
 ///
 /// Memory:  O(max_markers), from the arena.
-/// Time:    bounded: at most kMaxHypotheses are tried.
+/// Time:    bounded: at most kMaxHypotheses are tried and kMaxCompared distances compared, three
+///          times over. A search that was cut short does not match.
 class MarkerMatcher {
  public:
   struct Config {
@@ -58,6 +60,7 @@ class MarkerMatcher {
     double prior_gate_mm = 12.0;  ///< With a prior: how far off it may be at a marker.
   };
   static constexpr std::size_t kMaxHypotheses = 200000;
+  static constexpr std::size_t kMaxCompared = 100'000'000;
   static constexpr std::size_t kMaxFitted = 32;  ///< Pairs that take part in the fit.
 
   [[nodiscard]] static constexpr std::size_t bytes(std::size_t max_markers) noexcept {

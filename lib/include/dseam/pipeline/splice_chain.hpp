@@ -44,6 +44,7 @@ class SpliceChain {
     std::size_t max_markers_a_view = 64;
   };
   struct ViewReport {
+    bool reported_refused = false;  ///< The reported pose is no rigid transform; not used.
     markers::MarkerFinder::Report markers;
     markers::MatchReport match;
     splice::PatchExtractor::Report patches;

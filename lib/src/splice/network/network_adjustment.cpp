@@ -164,6 +164,19 @@ void Adjustment::settle_marker_variance() noexcept {
   }
 }
 
+// The weights follow the residuals. True when those just used were those the residuals ask for.
+bool Adjustment::settle_weights() noexcept {
+  constexpr double kSame = 0.1;
+  const double before = sigma_mm * sigma_mm * ties_per_independent;
+  const double markers_before = marker_variance_factor;
+  sigma_mm = std::max(kSmallestSigmaMm, surface.sigma_mm());
+  ties_per_independent = surface.ties_per_independent();
+  settle_marker_variance();
+  const double now = sigma_mm * sigma_mm * ties_per_independent;
+  return std::abs(now - before) < kSame * before &&
+         std::abs(marker_variance_factor - markers_before) < kSame * markers_before;
+}
+
 void Adjustment::adjust() noexcept {
   constexpr double kSettledMm = 2e-4;
   constexpr double kSettledDecrement = 1e-3;
@@ -179,14 +192,10 @@ void Adjustment::adjust() noexcept {
     }
     const double final_gate = std::max(config.final_gate_mm, 6.0 * surface.sigma_mm());
     const bool at_last_gate = gate <= config.final_gate_mm || gate <= 1.01 * final_gate;
-    if (at_last_gate) {
-      sigma_mm = std::max(kSmallestSigmaMm, surface.sigma_mm());
-      ties_per_independent = surface.ties_per_independent();
-      settle_marker_variance();
-    }
     // Where the surfaces leave a direction to the reports, ties that come and go keep the last step
     // above any fixed length: then it is enough that it is small beside its own sigma.
-    if (at_last_gate && (largest < kSettledMm || decrement < kSettledDecrement)) {
+    const bool settled = largest < kSettledMm || decrement < kSettledDecrement;
+    if (at_last_gate && settle_weights() && settled) {
       report.state = NetworkState::kAdjusted;
       return;
     }

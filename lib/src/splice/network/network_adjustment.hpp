@@ -40,6 +40,7 @@ struct Adjustment {
   void vote_on_base() noexcept;
   void adjust() noexcept;
   void settle_marker_variance() noexcept;
+  bool settle_weights() noexcept;
   double step(double gate_mm) noexcept;
   void add_reports() noexcept;
   bool leave_out_worst() noexcept;
