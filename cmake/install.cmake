@@ -12,4 +12,7 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/dseam-config-versio
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/dseam-config.cmake
   ${CMAKE_CURRENT_BINARY_DIR}/dseam-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/dseam)
+if(TARGET dseam)
+  install(TARGETS dseam)
+endif()
 install(FILES docs/weld-link.dbc DESTINATION ${CMAKE_INSTALL_DATADIR}/dseam)

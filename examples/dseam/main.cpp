@@ -45,6 +45,7 @@ ExitCode run(int argc, char** argv) {
   add_record(app, invocation);
   add_robot(app, invocation);
   add_cameras(app, invocation);
+  add_link_check(app, invocation);
   add_rt_report(app, invocation);
   add_config(app, invocation);
   try {

@@ -13,6 +13,7 @@ void add_cameras(CLI::App& app, Invocation& invocation);
 void add_config(CLI::App& app, Invocation& invocation);
 void add_extract(CLI::App& app, Invocation& invocation);
 void add_fit(CLI::App& app, Invocation& invocation);
+void add_link_check(CLI::App& app, Invocation& invocation);
 void add_record(CLI::App& app, Invocation& invocation);
 void add_robot(CLI::App& app, Invocation& invocation);
 void add_rt_report(CLI::App& app, Invocation& invocation);

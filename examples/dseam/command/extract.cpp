@@ -5,9 +5,8 @@
 
 #include "command/commands.hpp"
 #include "input/cloud_reader.hpp"
-#include "job/lent_memory.hpp"
+#include "job/extract_job.hpp"
 #include "job/products.hpp"
-#include "job/stopwatch.hpp"
 #include "job/verdict.hpp"
 
 namespace dseam::program {
@@ -60,23 +59,7 @@ ExitCode run(const Options& options, const Invocation& invocation) {
                         watch.lap_ms(),
                         {{"points", static_cast<double>(cloud.size())},
                          {"not finite", static_cast<double>(cloud.num_not_finite)}}});
-  const pipeline::SeamChain::Capacity capacity{.max_points =
-                                                   std::max<std::size_t>(1024, cloud.size())};
-  LentMemory memory(pipeline::SeamChain::bytes(capacity) +
-                    Arena::bytes<seam::SeamPoint>(settings.max_seam_points));
-  auto chain = pipeline::SeamChain::make(settings.seam, capacity, memory.arena());
-  if (!chain.ok()) {
-    throw Failure(ExitCode::kUsage,
-                  std::string("the configured seam stage: ") + name(chain.error()));
-  }
-  Buffer<seam::SeamPoint> seam(memory.arena().take<seam::SeamPoint>(settings.max_seam_points));
-
-  job.cloud_base.points = cloud.view();
-  job.seam_report = chain.value().run({.cloud_base = job.cloud_base}, seam);
-  job.stages.push_back({"seam", watch.lap_ms(), {{"points", static_cast<double>(seam.size())}}});
-  job.seam_base = view_of(seam.view(), job.seam_report);
-  job.weld = job.seam_report.weld();
-  job.reason = reason_of(job.seam_report, settings.seam);
+  const ExtractJob extraction(settings, cloud, watch, job);
   write_products(job, folder);
   print_summary(job, folder);
   return exit_code_of(job.seam_report);

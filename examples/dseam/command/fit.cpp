@@ -7,6 +7,7 @@
 #include "command/commands.hpp"
 #include "dseam/seam/curve/closed_curve_fit.hpp"
 #include "input/cloud_reader.hpp"
+#include "job/curve_report.hpp"
 #include "job/lent_memory.hpp"
 #include "job/products.hpp"
 #include "job/stopwatch.hpp"
@@ -29,38 +30,6 @@ std::vector<Eigen::Vector3d> vectors_of(const LoadedCloud& cloud) {
     points.emplace_back(cloud.x[i], cloud.y[i], cloud.z[i]);
   }
   return points;
-}
-
-/// The fit in the terms of a seam report: what the points do not tell stays zero.
-seam::SeamReport seam_report_of(const ClosedCurveFit::Report& fit) {
-  seam::SeamReport report;
-  report.refusal = fit.refusal;
-  report.closed = fit.refusal == seam::Refusal::kNone;
-  report.length_mm = fit.length_mm;
-  report.num_points = fit.num_points;
-  report.joint.shell = fit.shell;
-  report.joint.nozzle = fit.nozzle;
-  report.joint.axes_angle_rad = fit.axes_angle_rad;
-  report.joint.axes_offset_mm = fit.axes_offset_mm;
-  report.quality.largest_hole_rad = fit.largest_hole_rad;
-  report.quality.coverage = 1.0 - fit.largest_hole_rad / (2.0 * std::numbers::pi);
-  report.quality.lateral = fit.lateral;
-  report.quality.normal = fit.normal;
-  return report;
-}
-
-StageRow fit_row(const ClosedCurveFit::Report& fit, double ms) {
-  return {"fit",
-          ms,
-          {{"points", fit.num_points},
-           {"outliers", fit.num_outliers},
-           {"coefficients an axis", ClosedCurveFit::kCoefficients},
-           {"orthogonal rms mm", fit.orthogonal.rms_mm},
-           {"R-squared x", fit.r_squared.x()},
-           {"R-squared y", fit.r_squared.y()},
-           {"R-squared z", fit.r_squared.z()},
-           {"largest hole degrees", fit.largest_hole_rad * 180.0 / std::numbers::pi},
-           {"largest hole mm", fit.largest_hole_mm}}};
 }
 
 void print(const ClosedCurveFit::Report& fit) {
@@ -89,7 +58,7 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   JobReport job;
   job.command = "fit";
   job.input = options.points.string();
-  job.stages.push_back(fit_row(fit, watch.lap_ms()));
+  job.stages.push_back(curve_row(fit, watch.lap_ms()));
   job.seam_report = seam_report_of(fit);
   job.seam_base = view_of(curve.view(), job.seam_report);
   job.weld = job.seam_report.weld();

@@ -80,9 +80,9 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   Settings settings;
   invocation.configure(settings);
   if (settings.method == Method::kPaper) {
-    throw Failure(ExitCode::kUsage, "--method paper: not for this command yet");
+    throw Failure(ExitCode::kUsage, "--method paper works on a merged cloud: use dseam extract");
   }
-  check_robot_name(options.robot);
+  check_robot(options.robot);
   const auto T_flange_camera = hand_eye_of(options, settings);
   OutputFolder folder(options.out);
   const std::atomic<bool>& interrupted = watch_for_interrupt();

@@ -66,6 +66,7 @@ std::vector<Key> cell_keys(CellConfig& c) {
   std::vector<Key> keys = joint_keys(c.joint);
   append(keys, clutter_keys(c.clutter, c.markers));
   append(keys, scanner_keys(c.scanner, c.views));
+  keys.push_back({"cell", "seed", &c.seed, "Of all that is drawn by chance", "", 0, 1e9});
   return keys;
 }
 

@@ -19,8 +19,8 @@ struct Choice {
 
 /// Where the value of a key lives: in the very struct that a stage is made from, so that its
 /// default is the stage's own and stands nowhere twice.
-using Field =
-    std::variant<bool*, double*, float*, std::uint16_t*, std::uint32_t*, std::string*, Choice>;
+using Field = std::variant<bool*, double*, float*, std::uint16_t*, std::uint32_t*, std::uint64_t*,
+                           std::string*, Choice>;
 
 /// One key of the configuration file: the only place that knows its name, range and meaning.
 struct Key {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <ostream>
 #include <sstream>
+#include <utility>
 
 #include "failure.hpp"
 
@@ -64,8 +65,7 @@ class Assign {
   template <std::unsigned_integral T>
   bool operator()(T* field) const {
     const auto whole = node_.value_exact<std::int64_t>();
-    if (!whole || *whole < 0 || *whole > std::int64_t{std::numeric_limits<T>::max()} ||
-        !in_range(static_cast<double>(*whole))) {
+    if (!whole || !std::in_range<T>(*whole) || !in_range(static_cast<double>(*whole))) {
       return false;
     }
     *field = static_cast<T>(*whole);

@@ -7,6 +7,7 @@ namespace dseam::program {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+constexpr float kWideMm = 1.0e6F;
 
 std::vector<Key> job_keys(Settings& s) {
   return {{"job", "method", choice(s.method, {"dseam", "paper"}),
@@ -36,6 +37,35 @@ std::vector<Key> seam_keys(pipeline::SeamChain::Config& c) {
       {"seam", "hand_eye_sigma_mm", &c.hand_eye_sigma_mm,
        "Error of the hand-eye calibration at the seam; 0 when it is not known", "mm", 0, 100},
   };
+}
+
+void add_box_keys(const std::string& prefix, const std::string& what, cloud::OrientedBox& box,
+                  std::vector<Key>& keys) {
+  const auto add = [&](const char* end, float* mm) {
+    keys.push_back({"paper", prefix + end, mm, what, "mm", -kWideMm, kWideMm});
+  };
+  add("_min_x_mm", &box.low_mm.x);
+  add("_max_x_mm", &box.high_mm.x);
+  add("_min_y_mm", &box.low_mm.y);
+  add("_max_y_mm", &box.high_mm.y);
+  add("_min_z_mm", &box.low_mm.z);
+  add("_max_z_mm", &box.high_mm.z);
+}
+
+std::vector<Key> paper_keys(pipeline::PaperPipeline::Config& c) {
+  std::vector<Key> keys = {
+      {"paper", "num_neighbours", &c.outliers.num_neighbours, "K of equation 2", "", 1, 64},
+      {"paper", "alpha", &c.outliers.alpha, "Sigmas over the mean from which on equation 5 drops",
+       "", -10, 100},
+      {"paper", "cell_mm", &c.cell_mm, "Edge of the voxels", "mm", 0.1, 100},
+      {"paper", "radius_mm", &c.radius_mm, "Of the neighbours for normals and boundary", "mm", 0.1,
+       100},
+      {"paper", "min_gap_rad", &c.min_gap_rad,
+       "A larger angle without a neighbour makes a boundary point", "rad", 0.1, 2 * kPi},
+  };
+  add_box_keys("pass", "Passthrough: points beyond are dropped", c.passthrough, keys);
+  add_box_keys("seam", "Constraints: boundary points beyond are not the seam", c.constraints, keys);
+  return keys;
 }
 
 std::vector<Key> map_keys(pipeline::WeldPipeline::Config& c) {
@@ -71,6 +101,15 @@ std::vector<Key> hand_eye_keys(calibration::HandEyeConfig& c) {
 
 }  // namespace
 
+pipeline::PaperPipeline::Config unconstrained_paper() {
+  pipeline::PaperPipeline::Config config;
+  for (cloud::OrientedBox* box : {&config.passthrough, &config.constraints}) {
+    box->low_mm = {-kWideMm, -kWideMm, -kWideMm};
+    box->high_mm = {kWideMm, kWideMm, kWideMm};
+  }
+  return config;
+}
+
 void append(std::vector<Key>& keys, const std::vector<Key>& more) {
   keys.insert(keys.end(), more.begin(), more.end());
 }
@@ -79,6 +118,7 @@ std::vector<Key> keys_of(Settings& settings) {
   std::vector<Key> keys = job_keys(settings);
   append(keys, map_keys(settings.pipeline));
   append(keys, seam_keys(settings.seam));
+  append(keys, paper_keys(settings.paper));
   append(keys, motion_keys(settings.motion));
   append(keys, session_keys(settings.session));
   append(keys, hand_eye_keys(settings.hand_eye));

@@ -7,6 +7,7 @@
 #include "dseam/calibration/hand_eye.hpp"
 #include "dseam/hal/sim/cell_config.hpp"
 #include "dseam/pipeline/motion_chain.hpp"
+#include "dseam/pipeline/paper_pipeline.hpp"
 #include "dseam/pipeline/seam_chain.hpp"
 #include "dseam/pipeline/weld_pipeline.hpp"
 #include "robot/weld_run.hpp"
@@ -16,6 +17,9 @@ namespace dseam::program {
 
 enum class Method : std::uint8_t { kDseam, kPaper };
 
+/// The paper's values, with boxes so wide that nothing lies beyond.
+[[nodiscard]] pipeline::PaperPipeline::Config unconstrained_paper();
+
 /// Everything that can be configured, in the structs that the stages are made from.
 struct Settings {
   Method method = Method::kDseam;
@@ -23,6 +27,7 @@ struct Settings {
   std::uint32_t max_seam_points = 16384;
   std::uint32_t max_voxels = 600'000;
   pipeline::SeamChain::Config seam;
+  pipeline::PaperPipeline::Config paper = unconstrained_paper();
   pipeline::WeldPipeline::Config pipeline;  ///< Its `seam` is the one above.
   calibration::HandEyeConfig hand_eye;
   pipeline::MotionChain::Config motion;

@@ -55,6 +55,38 @@ std::string reason_of(const seam::SeamReport& report, const pipeline::SeamChain:
   return seam::name(report.refusal);
 }
 
+namespace {
+
+seam::SeamReport refused_for(seam::Refusal refusal) {
+  seam::SeamReport report;
+  report.refusal = refusal;
+  return report;
+}
+
+}  // namespace
+
+std::string paper_reason_of(const pipeline::PaperPipeline::Report& report,
+                            const pipeline::PaperPipeline::Config& rule) {
+  using seam::Refusal;
+  const std::string rim = std::to_string(report.constrained) + " points of the scan's rim";
+  switch (report.refusal) {
+    case Refusal::kNone:
+      return "a closed curve through " + rim + ", " + fixed(report.curve.orthogonal.rms_mm, 3) +
+             " mm rms; that it is the seam is for the constraints to ensure";
+    case Refusal::kNoRing:
+      return rim + " do not make one ring on two surfaces (paper.seam_* draws the constraints)";
+    case Refusal::kUncertain:
+      return rim + " lie " + fixed(report.curve.orthogonal.rms_mm, 3) +
+             " mm rms off any smooth closed curve; at most " + fixed(rule.max_rms_mm, 3) +
+             " mm are allowed";
+    case Refusal::kLowCoverage:
+    case Refusal::kLargeHole:
+      return rim + " leave a hole of " + degrees(report.curve.largest_hole_rad);
+    default:
+      return reason_of(refused_for(report.refusal), {});
+  }
+}
+
 ExitCode exit_code_of(const seam::SeamReport& report) {
   if (report.weld()) {
     return ExitCode::kDone;

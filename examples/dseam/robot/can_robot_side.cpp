@@ -1,25 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot/can_robot_side.hpp"
 
+#include "dseam/hal/socketcan/link_check.hpp"
 #include "dseam/rt/linux/thread_setup.hpp"
 #include "failure.hpp"
 
 namespace dseam::program {
 namespace {
-
-const char* cure_of(Errc error) {
-  switch (error) {
-    case Errc::kNotFound:
-      return "no such interface; `ip link` lists them";
-    case Errc::kUnavailable:
-      return "not permitted; CAP_NET_RAW or root is needed";
-    case Errc::kUnsupported:
-      return "no CAN FD here (`ip link set ... mtu 72`, or --set link.classic=true), or no CAN in "
-             "this kernel (`modprobe can_raw`)";
-    default:
-      return "cannot be opened; is it up? (`ip link set ... up`)";
-  }
-}
 
 bool set_up_for_real_time() {
   const auto granted = rt::set_up_thread({});
@@ -27,14 +14,27 @@ bool set_up_for_real_time() {
   return granted.ok() && granted.value().real_time();
 }
 
+[[noreturn]] void fail_to_open(const std::string& interface, Errc error) {
+  const auto finding = hal::socketcan::explain_open(interface, error);
+  throw Failure(ExitCode::kDevice, "can:" + interface + ": " + finding.text +
+                                       (finding.cure.empty() ? "" : " (" + finding.cure + ")"));
+}
+
 }  // namespace
+
+void check_can(const std::string& interface) {
+  const auto link = hal::socketcan::read_link(interface);
+  if (!link.ok()) {
+    fail_to_open(interface, link.error());
+  }
+}
 
 std::unique_ptr<hal::socketcan::SocketCanBus> open_can(const std::string& interface, bool classic) {
   hal::socketcan::SocketCanBus::Config config;
   config.fd = !classic;
   auto bus = hal::socketcan::SocketCanBus::open(interface, config);
   if (!bus.ok()) {
-    throw Failure(ExitCode::kDevice, "can:" + interface + ": " + cure_of(bus.error()));
+    fail_to_open(interface, bus.error());
   }
   return std::move(bus.value());
 }

@@ -35,6 +35,8 @@ class CanRobotSide final : public RobotSide {
   LastWords last_words_;
 };
 
+/// Throws Failure(kDevice) with the cure where there is no such interface; opens nothing.
+void check_can(const std::string& interface);
 /// Opens a CAN interface. Throws Failure(kDevice) with the cure.
 [[nodiscard]] std::unique_ptr<hal::socketcan::SocketCanBus> open_can(const std::string& interface,
                                                                      bool classic);

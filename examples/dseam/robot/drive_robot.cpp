@@ -104,9 +104,12 @@ void add_facts(const WeldOutcome& outcome, const RobotSide& side, const rt::Cycl
 
 }  // namespace
 
-void check_robot_name(const std::string& robot) {
+void check_robot(const std::string& robot) {
   if (robot != "sim" && robot != "none" && !(robot.starts_with("can:") && robot.size() > 4)) {
     throw Failure(ExitCode::kUsage, "--robot " + robot + ": sim, can:IFACE or none is meant");
+  }
+  if (robot.starts_with("can:")) {
+    check_can(robot.substr(4));
   }
 }
 

@@ -21,7 +21,7 @@ struct DriveReport {
 };
 
 /// Throws Failure(kUsage) for another word than `sim`, `none` or `can:IFACE`.
-void check_robot_name(const std::string& robot);
+void check_robot(const std::string& robot);
 
 /// Drives the robot named along the planned path; every frame on the bus goes to `can_log`.
 ///

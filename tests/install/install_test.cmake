@@ -1,0 +1,41 @@
+# Installs into an empty prefix, builds the consumer against it and runs what was installed.
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${ARGN}\nended with ${result}:\n${text}")
+  endif()
+  set(text "${text}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${PREFIX} ${CONSUMER_BUILD})
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX})
+run(${CMAKE_COMMAND} -S ${CONSUMER} -B ${CONSUMER_BUILD} -DCMAKE_PREFIX_PATH=${PREFIX}
+  -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS}" -DCMAKE_BUILD_TYPE=Release)
+run(${CMAKE_COMMAND} --build ${CONSUMER_BUILD})
+run(${CONSUMER_BUILD}/consumer)
+string(FIND "${text}" "EmptyCloud" at)
+if(at EQUAL -1)
+  message(FATAL_ERROR "the consumer should refuse an empty cloud by name, and said: ${text}")
+endif()
+
+# The program of the installed tree, away from the sources.
+set(dseam ${PREFIX}/${BINDIR}/dseam)
+if(EXISTS ${dseam})
+  run(${dseam} --version)
+  run(${dseam} config --print)
+  string(FIND "${text}" "[seam]" at)
+  if(at EQUAL -1)
+    message(FATAL_ERROR "dseam config --print does not print the configuration:\n${text}")
+  endif()
+  file(WRITE ${CONSUMER_BUILD}/printed.toml "${text}")
+  run(${dseam} config --print --config ${CONSUMER_BUILD}/printed.toml)
+endif()
+
+# The ten lines of the README are those that were just compiled.
+file(READ ${CONSUMER}/find_seam.cpp code)
+string(REGEX REPLACE "^// SPDX[^\n]*\n" "" code "${code}")
+file(READ ${README} readme)
+string(FIND "${readme}" "${code}" at)
+if(at EQUAL -1)
+  message(FATAL_ERROR "README.md shows other code than tests/install/consumer/find_seam.cpp")
+endif()

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "support/seam_accuracy.hpp"
+
+namespace dseam::program::test {
+
+/// What `dseam weld` left in a folder, judged by what `--truth` left in another: nothing but the
+/// files is read.
+///
+/// Errors:  throws std::runtime_error where a file is missing or malformed.
+[[nodiscard]] dseam::test::SeamAccuracy judge_weld(const std::string& out,
+                                                   const std::string& truth);
+
+}  // namespace dseam::program::test
