@@ -36,14 +36,22 @@ void VoxelHash::clear() noexcept {
   size_ = 0;
 }
 
-std::uint64_t VoxelHash::hash_of(CellKey key) const noexcept { return mixed(key.bits, secret_); }
+// The block of eight decides the line. Which of it is a cell's own is shifted about by the hash, so
+// that cells which are all even, say, still use all slots; the next try is the same one of the next
+// line, so that a full line pushes no other aside.
+VoxelHash::Place VoxelHash::place_of(CellKey key) const noexcept {
+  constexpr std::uint64_t kLowest = CellKey{1U | 1ULL << 21U | 1ULL << 42U}.bits;
+  const std::uint64_t low = key.bits & kLowest;
+  const std::uint64_t hash = mixed(key.bits ^ low, secret_);
+  const std::uint64_t within = (low | low >> 20U | low >> 40U) % kInLine;
+  return {static_cast<std::size_t>(hash ^ within) & (slots_.size() - 1),
+          static_cast<std::uint32_t>(hash >> 32U) ^ static_cast<std::uint32_t>(within)};
+}
 
 std::uint32_t VoxelHash::find_or_insert(CellKey key) noexcept {
-  const std::uint64_t hash = hash_of(key);
-  const auto tag = static_cast<std::uint32_t>(hash >> 32U);
-  const std::size_t mask = slots_.size() - 1;
-  std::size_t at = hash & mask;
-  for (std::uint32_t probe = 0; probe < kMaxProbes; ++probe, at = (at + 1) & mask) {
+  const auto [first, tag] = place_of(key);
+  std::size_t at = first;
+  for (std::uint32_t probe = 0; probe < kMaxProbes; at = next(at, probe++)) {
     Slot& slot = slots_[at];
     if (slot.number_plus_one == 0) {
       if (size_ == keys_.size()) {
@@ -61,11 +69,9 @@ std::uint32_t VoxelHash::find_or_insert(CellKey key) noexcept {
 }
 
 std::uint32_t VoxelHash::find(CellKey key) const noexcept {
-  const std::uint64_t hash = hash_of(key);
-  const auto tag = static_cast<std::uint32_t>(hash >> 32U);
-  const std::size_t mask = slots_.size() - 1;
-  std::size_t at = hash & mask;
-  for (std::uint32_t probe = 0; probe < kMaxProbes; ++probe, at = (at + 1) & mask) {
+  const auto [first, tag] = place_of(key);
+  std::size_t at = first;
+  for (std::uint32_t probe = 0; probe < kMaxProbes; at = next(at, probe++)) {
     const Slot& slot = slots_[at];
     if (slot.number_plus_one == 0) {
       return kAbsent;

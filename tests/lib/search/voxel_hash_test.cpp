@@ -60,6 +60,30 @@ TEST_F(VoxelHashTest, a_full_table_says_so_and_keeps_what_it_has) {
   EXPECT_EQ(hash.size(), 100U);
 }
 
+TEST_F(VoxelHashTest, every_small_table_holds_as_many_cells_as_it_promises) {
+  for (std::int32_t capacity = 1; capacity <= 64; ++capacity) {
+    for (std::uint64_t secret = 0; secret < 20; ++secret) {
+      for (const std::int32_t step : {1, 2, 8}) {  // Dense, all even, one in a line.
+        test::ArenaOwner memory(VoxelHash::bytes(static_cast<std::size_t>(capacity)));
+        VoxelHash hash =
+            VoxelHash::make(static_cast<std::size_t>(capacity), memory.arena(), secret).value();
+        for (std::int32_t i = 0; i < capacity; ++i) {
+          const CellKey key = CellKey::of(i % 4 * step, i / 4 % 4 * step, i / 16 * step);
+          ASSERT_EQ(hash.find_or_insert(key), static_cast<std::uint32_t>(i));
+        }
+      }
+    }
+  }
+}
+
+TEST_F(VoxelHashTest, a_large_table_of_cells_that_are_all_even_fills_up_too) {
+  VoxelHash hash = make(20000);
+  for (std::int32_t i = 0; i < 20000; ++i) {
+    ASSERT_NE(hash.find_or_insert(CellKey::of(i % 50 * 2, i / 50 % 50 * 2, i / 2500 * 2)),
+              VoxelHash::kFull);
+  }
+}
+
 TEST_F(VoxelHashTest, keys_that_differ_in_few_high_bits_all_find_room) {
   VoxelHash hash = make(20000);
   for (std::int32_t i = 0; i < 20000; ++i) {
