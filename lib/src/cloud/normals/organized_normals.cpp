@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../depth/count_lanes.hpp"
-#include "../geometry/vec3_lanes.hpp"
+#include "../../depth/count_lanes.hpp"
+#include "../../geometry/vec3_lanes.hpp"
 #include "dseam/base/expects.hpp"
 
 namespace dseam::cloud {
@@ -84,6 +84,37 @@ bool is_in(const depth::DepthImage& image, std::uint32_t u, std::uint32_t v) noe
          v < image.intrinsics.height;
 }
 
+// What the window's pixels are measured against.
+struct Centre {
+  std::uint32_t u, v;  ///< Of the first of eight.
+  FloatLanes z;
+  FloatLanes inverse_z;
+  IntLanes valid;
+};
+
+WindowSums sums_around(const OrganizedNormals::Config& config, const depth::DepthImage& image,
+                       const Centre& centre) noexcept {
+  const auto half = static_cast<std::int32_t>(config.half_window);
+  const FloatLanes mm = splat(static_cast<float>(image.mm_per_count));
+  WindowSums sums;
+  for (std::int32_t dv = -half; dv <= half; ++dv) {
+    for (std::int32_t du = -half; du <= half; ++du) {
+      const IntLanes counts =
+          depth::counts_at(image, std::int64_t{centre.u} + du, std::int64_t{centre.v} + dv, 1);
+      const FloatLanes other = lanes::to_float(counts) * mm;
+      const auto steps = static_cast<float>(std::max(std::abs(du), std::abs(dv)));
+      const FloatLanes limit = splat(config.max_step_mm * steps);
+      const IntLanes near =
+          centre.valid & (splat(0) < counts) & (lanes::magnitude(other - centre.z) <= limit);
+      // 1/other - 1/z without the cancellation of the two.
+      const FloatLanes safe = lanes::select(near, other, splat(1.0F));
+      sums.add(near, static_cast<float>(du), static_cast<float>(dv),
+               (centre.z - other) * centre.inverse_z / safe);
+    }
+  }
+  return sums;
+}
+
 }  // namespace
 
 struct OrganizedNormals::Eight {
@@ -115,27 +146,11 @@ Result<OrganizedNormals> OrganizedNormals::make(const Config& config) noexcept {
 OrganizedNormals::Eight OrganizedNormals::fit_eight(const depth::DepthImage& image, std::uint32_t u,
                                                     std::uint32_t v) const noexcept {
   const depth::Intrinsics& k = image.intrinsics;
-  const auto half = static_cast<std::int32_t>(config_.half_window);
-  const FloatLanes mm = splat(static_cast<float>(image.mm_per_count));
-  const IntLanes centre = depth::counts_at(image, u, v, 1);
-  const FloatLanes z = lanes::to_float(centre) * mm;
-  const IntLanes valid = splat(0) < centre;
+  const IntLanes counts = depth::counts_at(image, u, v, 1);
+  const FloatLanes z = lanes::to_float(counts) * splat(static_cast<float>(image.mm_per_count));
+  const IntLanes valid = splat(0) < counts;
   const FloatLanes inverse_z = splat(1.0F) / lanes::select(valid, z, splat(1.0F));
-  WindowSums sums;
-  for (std::int32_t dv = -half; dv <= half; ++dv) {
-    for (std::int32_t du = -half; du <= half; ++du) {
-      const IntLanes counts =
-          depth::counts_at(image, std::int64_t{u} + du, std::int64_t{v} + dv, 1);
-      const FloatLanes other = lanes::to_float(counts) * mm;
-      const auto steps = static_cast<float>(std::max(std::abs(du), std::abs(dv)));
-      const FloatLanes limit = splat(config_.max_step_mm * steps);
-      const IntLanes near = valid & (splat(0) < counts) & (lanes::magnitude(other - z) <= limit);
-      // 1/other - 1/z without the cancellation of the two.
-      const FloatLanes safe = lanes::select(near, other, splat(1.0F));
-      sums.add(near, static_cast<float>(du), static_cast<float>(dv),
-               (z - other) * inverse_z / safe);
-    }
-  }
+  const WindowSums sums = sums_around(config_, image, {u, v, z, inverse_z, valid});
   const PlaneFit plane = fit(sums);
   const auto fx = static_cast<float>(k.fx);
   const auto fy = static_cast<float>(k.fy);
