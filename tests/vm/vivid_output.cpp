@@ -47,6 +47,8 @@ bool join_both_ends(int capture, int output, std::uint32_t fourcc, std::size_t s
   format.fmt.pix.pixelformat = fourcc;
   format.fmt.pix.width = VividOutput::kWidth;
   format.fmt.pix.height = VividOutput::kHeight;
+  format.fmt.pix.bytesperline = 0;  // Else it stays that of the format before.
+  format.fmt.pix.sizeimage = 0;
   ok = ioctl(output, VIDIOC_S_FMT, &format) == 0 && ok;
   return ok && format.fmt.pix.pixelformat == fourcc && format.fmt.pix.sizeimage == size;
 }
