@@ -49,6 +49,7 @@ bench:
 
 # The campaigns and soaks that `make test` leaves out: hours.
 check-long: build
+	@$(INSTALL) vm
 	ctest --preset $(PRESET) -L long
 
 test-vm: build

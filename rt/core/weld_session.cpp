@@ -54,6 +54,7 @@ Result<> WeldSession::plan(const torch::TorchPose& now, trajectory::SetPointView
     trip(verdict.fault);
     return Errc::kBadData;
   }
+  (void)link_.expect(points);  // What does not fit is refused when it is loaded.
   points_ = points;
   return apply(SessionEvent::kPlan);
 }

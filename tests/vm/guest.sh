@@ -5,6 +5,7 @@
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 build=$(cat /out/build)
+[ ! -e /out/environment ] || . /out/environment
 failed=0
 ran=0
 
@@ -15,7 +16,7 @@ for program in "$build"/vm/tests/*; do
   [ -x "$program" ] || continue
   name=$(basename "$program")
   ran=$((ran + 1))
-  timeout 300 "$program" --gtest_output="xml:/out/$name.xml" >"/out/$name.log" 2>&1
+  timeout "${PROGRAM_TIMEOUT:-300}" "$program" --gtest_output="xml:/out/$name.xml" >"/out/$name.log" 2>&1
   rc=$?
   skipped=$(grep -c 'SKIPPED' "/out/$name.log")
   passed=$(grep -c '^\[       OK' "/out/$name.log")

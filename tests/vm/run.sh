@@ -20,12 +20,18 @@ need qemu-system-x86_64 qemu-system-x86
 need busybox busybox-static
 need ip iproute2
 
+kernel_of() { apt-cache depends "$1" 2>/dev/null | awk '/Depends: linux-image/ {print $2; exit}'; }
+
 # The package name that a meta package stands for changes with every security update.
 prepare() {
   local package real folder=$build/vm/$1
   package=$1
-  real=$(apt-cache depends "$package" | awk '/Depends: linux-image/ {print $2; exit}')
-  [ -n "$real" ] || { echo "no package $package; try apt-get update"; exit 2; }
+  real=$(kernel_of "$package")
+  if [ -z "$real" ]; then
+    apt-get -q update || true
+    real=$(kernel_of "$package")
+  fi
+  [ -n "$real" ] || { echo "test-vm needs the package $package, and apt does not know it"; exit 2; }
   mkdir -p "$folder"
   [ "$(cat "$folder/made-of" 2>/dev/null)" = "$real $(cat "$here/init" "$here/make_guest.py" | cksum)" ] && return
   rm -f "$folder"/*.deb
@@ -40,6 +46,8 @@ boot() {
   local guest=$build/vm/$1 out=$2 script=$3 append=${append:-}
   shift 3
   echo "$build" >"$out/build"
+  [ -z "${DSEAM_VCAN_POINTS:-}" ] ||
+    echo "export DSEAM_VCAN_POINTS=$DSEAM_VCAN_POINTS PROGRAM_TIMEOUT=3000" >"$out/environment"
   timeout "${VM_TIMEOUT:-560}" qemu-system-x86_64 -M pc -cpu max "$@" \
     -m 1024 -nodefaults -no-user-config -display none -serial stdio -no-reboot \
     -object can-bus,id=bus0 -device kvaser_pci,canbus=bus0 -device kvaser_pci,canbus=bus0 \

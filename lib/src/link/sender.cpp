@@ -76,13 +76,22 @@ Result<> Sender::arm(std::int64_t now_ns) noexcept {
   return order(state_ == HostState::kIdle, HostState::kArming, now_ns);
 }
 
+Result<> Sender::expect(trajectory::SetPointView points) noexcept {
+  if (points.empty() || !PointStream::encodable(points) || !fits_peer(points)) {
+    return Errc::kInvalidArgument;
+  }
+  expected_ = points;
+  return {};
+}
+
 Result<> Sender::load(trajectory::SetPointView points, std::uint16_t trajectory,
                       std::int64_t now_ns) noexcept {
   if (state_ != HostState::kArmed && state_ != HostState::kDone) {
     return Errc::kUnavailable;
   }
   const bool new_id = trajectory != 0 && trajectory != status_.trajectory;
-  if (points.empty() || !new_id || !PointStream::encodable(points) || !fits_peer(points)) {
+  const bool known = points.data() == expected_.data() && points.size() == expected_.size();
+  if (!new_id || points.empty() || (!known && !expect(points).ok())) {
     return Errc::kInvalidArgument;
   }
   stream_.begin(points, session_, trajectory);
@@ -188,6 +197,7 @@ void Sender::on_hello(const Frame& frame, std::int64_t now_ns) noexcept {
     return;
   }
   peer_ = decoded.value();
+  expected_ = {};
   const bool same_words = config_.dictionary_crc == 0 || peer_.dictionary_crc == 0 ||
                           peer_.dictionary_crc == config_.dictionary_crc;
   if (peer_.version != kProtocolVersion || !same_words) {

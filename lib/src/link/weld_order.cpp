@@ -10,7 +10,8 @@ WeldProgress give_next_order(Sender& sender, const WeldOrder& weld, std::int64_t
       given = sender.connect(weld.session, now_ns);
       break;
     case HostState::kIdle:
-      given = sender.arm(now_ns);
+      given = sender.expect(weld.points);
+      given = given.ok() ? sender.arm(now_ns) : given;
       break;
     case HostState::kArmed:
       given = sender.load(weld.points, weld.trajectory, now_ns);

@@ -194,6 +194,25 @@ TEST_F(AravisCameraTest, after_a_reconnect_the_settings_are_applied_again) {
   EXPECT_EQ(camera->state(), AravisState::kStreaming);
 }
 
+TEST_F(AravisCameraTest, stop_returns_at_once_also_in_the_middle_of_a_reconnection) {
+  FakeGigeCamera device;
+  const auto camera = open();
+  ASSERT_TRUE(camera->start(FrameMode::kEvery).ok());
+  ASSERT_TRUE(wait_for_frame(*camera));
+  device.unplug();
+  while (camera->state() != AravisState::kLost) {
+    std::this_thread::sleep_for(10ms);
+  }
+  // From here on the control thread is in Aravis' discovery nearly all the time, a second each.
+  for (int i = 0; i < 12; ++i) {
+    std::this_thread::sleep_for(237ms);
+    const auto begin = std::chrono::steady_clock::now();
+    camera->stop();
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 100ms);
+    EXPECT_EQ(camera->next(0ms).error(), Errc::kUnavailable);
+  }
+}
+
 TEST_F(AravisCameraTest, stop_returns_at_once_also_while_the_device_is_gone) {
   FakeGigeCamera device;
   const auto camera = open();

@@ -167,6 +167,21 @@ TEST_P(Loopback, a_trajectory_with_a_bad_point_is_refused_before_anything_is_sen
   EXPECT_EQ(host_.state(), HostState::kArmed);
 }
 
+TEST_P(Loopback, what_was_expected_is_loaded_and_what_was_not_is_looked_at) {
+  const auto points = straight_weld(200, 4000);
+  auto bad = points;
+  bad[100].t_us = bad[99].t_us;
+  ASSERT_TRUE(prepare(points));
+
+  EXPECT_TRUE(host_.expect(points).ok());
+  EXPECT_EQ(host_.expect(bad).error(), Errc::kInvalidArgument);
+  EXPECT_EQ(host_.expect({}).error(), Errc::kInvalidArgument);
+  ASSERT_TRUE(host_.start(now_ns_).ok());
+  ASSERT_TRUE(run_until(HostState::kDone));
+  EXPECT_EQ(host_.load(bad, 2, now_ns_).error(), Errc::kInvalidArgument);
+  EXPECT_TRUE(host_.load(points, 2, now_ns_).ok());
+}
+
 TEST_P(Loopback, nobody_there_is_a_named_fault) {
   host_to_robot_ = false;
   ASSERT_TRUE(host_.connect(5, now_ns_).ok());

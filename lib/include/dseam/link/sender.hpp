@@ -33,7 +33,8 @@ enum class HostState : std::uint8_t {
 /// go-back-N with credits. Every poll() sends abort first, then the heartbeat, then points.
 ///
 /// Memory:  none; the trajectory stays the caller's and must outlive its execution.
-/// Time:    on_frame() O(1); poll() at most `points_per_poll` points; load() O(points).
+/// Time:    on_frame() O(1); poll() at most `points_per_poll` points; load() O(1) for points
+///          that expect() has seen in this session, else as that O(points).
 /// Context: one thread; times are the caller's monotonic clock.
 /// Errors:  an order that the state does not allow is kUnavailable and changes nothing.
 class Sender {
@@ -73,6 +74,10 @@ class Sender {
   /// `session`: never 0 and never used before; take it from a good source of randomness.
   Result<> connect(std::uint32_t session, std::int64_t now_ns) noexcept;
   Result<> arm(std::int64_t now_ns) noexcept;
+  /// Looks at all points while nothing is armed, so that no cycle of an armed link has to.
+  ///
+  /// Errors:  as load().
+  Result<> expect(trajectory::SetPointView points) noexcept;
   /// Errors:  kInvalidArgument: no points, times that do not rise or come faster than the robot
   ///          takes them, a value that is not finite or does not fit.
   Result<> load(trajectory::SetPointView points, std::uint16_t trajectory,
@@ -150,6 +155,7 @@ class Sender {
   bool greeted_ = false;
   bool permit_ = false;
   Hello peer_;
+  trajectory::SetPointView expected_;  ///< Fits this peer.
   Status status_;
   PoseReport pose_;
   std::int64_t clock_offset_ns_ = std::numeric_limits<std::int64_t>::max();
