@@ -20,7 +20,9 @@ constexpr double kShellShare = 0.6;    // Of the margin: between the two a pixel
 constexpr std::size_t kMaxApart = 24;  // A dead band lies between the two.
 constexpr std::size_t kMaxFlying = 3;
 constexpr std::size_t kShellRun = 2;  // Pixels beside the last one.
-constexpr std::uint32_t kStride = 2;
+constexpr double kLineMm = 0.8;       // Between two lines that are walked.
+constexpr int kRays = 360;
+constexpr double kRayStepMm = 2.0;
 constexpr std::uint32_t kNoiseStride = 8;
 
 Eigen::Vector3d ray_of(const depth::Intrinsics& k, double u, double v) noexcept {
@@ -42,13 +44,21 @@ void EdgeScanner::run(std::span<const depth::DepthImage> frames,
     }
     T_base_camera_ = views[i].T_base_camera;
     const Window w = window_of(frames[i].intrinsics);
-    for (std::uint32_t v = w.v0; v < w.v1; v += kStride) {
+    const std::uint32_t stride = stride_of(frames[i].intrinsics);
+    for (std::uint32_t v = w.v0; v < w.v1; v += stride) {
       scan_line(frames[i], {w.u0, v, true}, std::min<std::size_t>(w.u1 - w.u0, kMaxLine));
     }
-    for (std::uint32_t u = w.u0; u < w.u1; u += kStride) {
+    for (std::uint32_t u = w.u0; u < w.u1; u += stride) {
       scan_line(frames[i], {u, w.v0, false}, std::min<std::size_t>(w.v1 - w.v0, kMaxLine));
     }
   }
+}
+
+// Lines this many pixels apart lie as far from each other on the part, whatever the camera.
+std::uint32_t EdgeScanner::stride_of(const depth::Intrinsics& k) const noexcept {
+  const Eigen::Vector3d p = T_base_camera_.inverse() * fit_->joint().nozzle.point;
+  const double pixel_mm = std::max(1e-3, p.z() / k.fx);
+  return static_cast<std::uint32_t>(std::clamp(kLineMm / pixel_mm, 1.0, 8.0));
 }
 
 // A fused point is the mean of several pixels; a single one scatters more, and it is single pixels
@@ -93,34 +103,44 @@ double EdgeScanner::off_shell_mm(const depth::DepthImage& frame, std::uint32_t u
   return beside ? std::abs(fit_->above_shell(p)) : std::numeric_limits<double>::infinity();
 }
 
-// The part of the image in which the joint and the shell around it lie.
-EdgeScanner::Window EdgeScanner::window_of(const depth::Intrinsics& k) const noexcept {
-  constexpr int kAngles = 72;
+// The part of the image in which the joint and the shell around it lie, and which blocks of it.
+EdgeScanner::Window EdgeScanner::window_of(const depth::Intrinsics& k) noexcept {
   const geometry::RigidTransform T_camera_base = T_base_camera_.inverse();
-  double u0 = k.width;
-  double v0 = k.height;
-  double u1 = 0.0;
-  double v1 = 0.0;
-  for (int i = 0; i < kAngles; ++i) {
-    const double phi = 2.0 * std::numbers::pi * i / kAngles;
+  std::fill(blocks_.begin(), blocks_.end(), std::uint8_t{0});
+  Window w{k.width, k.height, 0, 0};
+  for (int i = 0; i < kRays; ++i) {
+    const double phi = 2.0 * std::numbers::pi * i / kRays;
     const auto root = root_at(fit_->joint(), fit_->frame(), phi);
     if (!root) {
       continue;
     }
     const Eigen::Vector3d n = outward_normal(fit_->joint().nozzle, *root);
-    const Eigen::Vector3d p = T_camera_base * (*root + kReachMm * n);
-    if (p.z() > 1.0) {
-      u0 = std::min(u0, k.fx * p.x() / p.z() + k.cx);
-      u1 = std::max(u1, k.fx * p.x() / p.z() + k.cx);
-      v0 = std::min(v0, k.fy * p.y() / p.z() + k.cy);
-      v1 = std::max(v1, k.fy * p.y() / p.z() + k.cy);
+    for (double away_mm = 0.0; away_mm <= kReachMm; away_mm += kRayStepMm) {
+      const Eigen::Vector3d p = T_camera_base * (*root + away_mm * n);
+      const double u = k.fx * p.x() / p.z() + k.cx;
+      const double v = k.fy * p.y() / p.z() + k.cy;
+      if (p.z() > 1.0 && u >= 0.0 && v >= 0.0 && u < std::min<double>(k.width, kMaxLine) &&
+          v < std::min<double>(k.height, kMaxLine)) {
+        mark({static_cast<std::uint32_t>(u), static_cast<std::uint32_t>(v)}, k, w);
+      }
     }
   }
-  const auto clipped = [](double value, std::uint32_t size) {
-    return static_cast<std::uint32_t>(std::clamp(value, 0.0, static_cast<double>(size)));
-  };
-  return {clipped(u0, k.width), clipped(v0, k.height), clipped(u1 + 1.0, k.width),
-          clipped(v1 + 1.0, k.height)};
+  return w;
+}
+
+// The pixel's block and those around it.
+void EdgeScanner::mark(const PixelPlace& at, const depth::Intrinsics& k, Window& w) noexcept {
+  const std::uint32_t bu = at.u / kBlock;
+  const std::uint32_t bv = at.v / kBlock;
+  for (std::uint32_t y = bv - std::min(bv, 1U); y <= std::min(bv + 1, kBlocksAcross - 1); ++y) {
+    for (std::uint32_t x = bu - std::min(bu, 1U); x <= std::min(bu + 1, kBlocksAcross - 1); ++x) {
+      blocks_[y * kBlocksAcross + x] = 1;
+    }
+  }
+  w.u0 = std::min(w.u0, at.u - std::min(at.u, kBlock));
+  w.v0 = std::min(w.v0, at.v - std::min(at.v, kBlock));
+  w.u1 = std::max(w.u1, std::min(at.u + kBlock, k.width));
+  w.v1 = std::max(w.v1, std::min(at.v + kBlock, k.height));
 }
 
 EdgeScanner::Pixel EdgeScanner::classify(const depth::DepthImage& frame, std::uint32_t u,
@@ -153,8 +173,10 @@ void EdgeScanner::scan_line(const depth::DepthImage& frame, const Step& start,
   constexpr std::size_t kNone = SIZE_MAX;
   for (std::size_t i = 0; i < count; ++i) {
     const auto step = static_cast<std::uint32_t>(i);
-    line_[i] =
-        classify(frame, start.u + (start.along_u ? step : 0), start.v + (start.along_u ? 0 : step));
+    const std::uint32_t u = start.u + (start.along_u ? step : 0);
+    const std::uint32_t v = start.v + (start.along_u ? 0 : step);
+    const bool near = blocks_[v / kBlock * kBlocksAcross + u / kBlock] != 0;
+    line_[i] = near ? classify(frame, u, v) : Pixel{Kind::kOther, 0.0F};
   }
   std::size_t last = kNone;
   for (std::size_t i = 0; i < count; ++i) {

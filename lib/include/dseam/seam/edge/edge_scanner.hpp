@@ -30,12 +30,14 @@ class EdgeScanner {
 
   [[nodiscard]] static constexpr std::size_t bytes(std::size_t max_intervals) noexcept {
     return Arena::bytes<EdgeInterval>(max_intervals) + Arena::bytes<Pixel>(kMaxLine) +
+           Arena::bytes<std::uint8_t>(std::size_t{kBlocksAcross} * kBlocksAcross) +
            Arena::bytes<Nearest>(kBins);
   }
   EdgeScanner() = default;
   EdgeScanner(std::size_t max_intervals, Arena& arena) noexcept
       : intervals_(arena.take<EdgeInterval>(max_intervals)),
         line_(arena.take<Pixel>(kMaxLine)),
+        blocks_(arena.take<std::uint8_t>(std::size_t{kBlocksAcross} * kBlocksAcross)),
         nearest_(arena.take<Nearest>(kBins)) {}
 
   /// `noise_mm` is that of the fused points; a single pixel's is measured here.
@@ -56,6 +58,8 @@ class EdgeScanner {
     Kind kind = Kind::kNothing;
     float z_mm = 0.0F;
   };
+  static constexpr std::uint32_t kBlock = 8;  // Pixels across a block.
+  static constexpr std::uint32_t kBlocksAcross = kMaxLine / kBlock;
   static constexpr std::size_t kBins = 120;
   static constexpr std::size_t kNearest = 6;
   // The shell's points nearest to the nozzle in one bin of the angle, and the nozzle's lowest.
@@ -65,6 +69,9 @@ class EdgeScanner {
   };
   struct Window {
     std::uint32_t u0 = 0, v0 = 0, u1 = 0, v1 = 0;  // The last ones are excluded.
+  };
+  struct PixelPlace {
+    std::uint32_t u, v;
   };
   struct Step {
     std::uint32_t u, v;
@@ -76,7 +83,9 @@ class EdgeScanner {
   [[nodiscard]] double off_shell_mm(const depth::DepthImage& frame, std::uint32_t u,
                                     std::uint32_t v) const noexcept;
   void collect_nearest(const JointFit& fit) noexcept;
-  [[nodiscard]] Window window_of(const depth::Intrinsics& k) const noexcept;
+  [[nodiscard]] Window window_of(const depth::Intrinsics& k) noexcept;
+  void mark(const PixelPlace& at, const depth::Intrinsics& k, Window& w) noexcept;
+  [[nodiscard]] std::uint32_t stride_of(const depth::Intrinsics& k) const noexcept;
   [[nodiscard]] Pixel classify(const depth::DepthImage& frame, std::uint32_t u,
                                std::uint32_t v) const noexcept;
   void scan_line(const depth::DepthImage& frame, const Step& start, std::size_t count) noexcept;
@@ -98,6 +107,7 @@ class EdgeScanner {
   bool full_ = false;
   Buffer<EdgeInterval> intervals_;
   std::span<Pixel> line_;
+  std::span<std::uint8_t> blocks_;  // Of the image: 1 where the joint is near.
   std::span<Nearest> nearest_;
 };
 
