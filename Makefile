@@ -46,6 +46,7 @@ bench:
 	cmake --preset $(PRESET) -DDSEAM_BUILD_BENCH=ON
 	cmake --build --preset $(PRESET) -j $(JOBS)
 	$(BUILD)/tests/bench/core_bench
+	$(BUILD)/tests/bench/seam_bench
 
 # The campaigns and soaks that `make test` leaves out: hours.
 check-long: build

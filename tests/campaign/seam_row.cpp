@@ -14,6 +14,8 @@ using hal::sim::JointKind;
 using hal::sim::ShellKind;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+// Under a nozzle that leans by 30 degrees, cameras at 45 see nothing of it but straight from ahead.
+constexpr double kTiltRad = 57.0 * kDegree;
 
 void nothing(CellConfig&) {}
 void touching(CellConfig& c) { c.joint.gap_mm = 0.0; }
@@ -70,6 +72,7 @@ CellConfig cell_of(const Row& row, std::uint64_t seed) {
   config.joint.nozzle_radius_mm = 45.0 + 20.0 * random.uniform();
   config.joint.nozzle_ovality_angle_rad = 3.0 * random.uniform();
   config.views.first_azimuth_rad = 6.0 * random.uniform();
+  config.views.tilt_rad = kTiltRad;
   config.scanner.unseen_start = random.uniform();
   row.change(config);
   if (config.joint.shell == ShellKind::kPlane) {

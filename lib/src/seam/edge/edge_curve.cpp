@@ -247,16 +247,21 @@ double EdgeCurve::at(double phi_rad) const noexcept { return value_at(basis_at(p
 
 double EdgeCurve::variance_at(double phi_rad) const noexcept {
   Storage factor = normal_;
-  Vector b = basis_at(phi_rad);
-  LentSymmetric(factor, order_).solve(std::span<double>(b).first(order_));
-  double sum = 0.0;
+  const Vector b = basis_at(phi_rad);
+  Vector x = b;
+  LentSymmetric(factor, order_).solve(std::span<double>(x).first(order_));
+  double scatter = 0.0;
+  double freedom = 0.0;
   for (std::size_t i = 0; i < order_; ++i) {
+    freedom += kKinship * b[i] * x[i];
     for (std::size_t k = 0; k < order_; ++k) {
-      sum += b[i] * meat_[i * order_ + k] * b[k];
+      scatter += x[i] * meat_[i * order_ + k] * x[k];
     }
   }
-  const double slack = std::abs(slack_mm_[sector_of(phi_rad)]);
-  return sum + slack * slack / 12.0;
+  // Where hardly a vote holds the curve it is free, but not beyond the intervals.
+  const double slack = slack_mm_[sector_of(phi_rad)];
+  const double least = slack == kUnheld ? slack * slack / 12.0 : 0.0;
+  return scatter + std::max(least, std::min(freedom, slack * slack / 12.0));
 }
 
 }  // namespace dseam::seam
