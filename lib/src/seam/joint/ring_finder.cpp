@@ -18,7 +18,8 @@ constexpr double kMinJointCosine = 0.97;   // Surfaces nearer than 14 degrees do
 
 constexpr double kMaxWallShare = 0.6;  // Of a nozzle's radius.
 constexpr double kMinWallMm = 1.5;
-constexpr double kOutside = 1.6;  // What an outside is preferred to a bore by.
+constexpr double kOutside =
+    4.0;  // What an outside is preferred to a bore by: it may be half hidden.
 constexpr double kCoaxialCosine = 0.99;
 constexpr double kMaxOffAxisShare = 0.1;  // Of the radius.
 constexpr double kOtherSideCosine = -0.1;
