@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -20,7 +21,9 @@ inline constexpr std::size_t kPartLanes = 8;
 inline constexpr std::size_t kPartLanes = 4;
 #endif
 typedef float FloatPart __attribute__((vector_size(kPartLanes * sizeof(float))));
-typedef std::int32_t IntPart __attribute__((vector_size(kPartLanes * sizeof(std::int32_t))));
+// Of int, as comparisons give it: std::int32_t is another type, long, on a Cortex-M.
+static_assert(sizeof(int) == sizeof(std::int32_t));
+typedef int IntPart __attribute__((vector_size(kPartLanes * sizeof(int))));
 
 template <typename Part>
 struct Lanes {
@@ -108,8 +111,10 @@ template <typename Part, typename E>
 [[gnu::always_inline, nodiscard]] inline FloatLanes splat(float value) noexcept {
   return FloatLanes::each([value](auto zero) { return value - zero; }, FloatLanes{});
 }
-[[gnu::always_inline, nodiscard]] inline IntLanes splat(std::int32_t value) noexcept {
-  return IntLanes::each([value](auto zero) { return value - zero; }, IntLanes{});
+template <std::signed_integral T>
+[[gnu::always_inline, nodiscard]] inline IntLanes splat(T value) noexcept {
+  static_assert(sizeof value == sizeof(int));
+  return IntLanes::each([value](auto zero) { return static_cast<int>(value) - zero; }, IntLanes{});
 }
 /// `a` where the mask is set, else `b`.
 template <typename Part>
