@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -47,6 +48,17 @@ void write_truth_of(const ScanSource& source, const std::filesystem::path& folde
   }
 }
 
+/// A calibration that no view could use must not go unnoticed.
+void check_hand_eye(const Options& options, const std::vector<ScannedView>& views) {
+  const bool used = std::any_of(views.begin(), views.end(), [](const ScannedView& view) {
+    return view.T_base_flange.has_value();
+  });
+  if (!options.hand_eye.empty() && !used) {
+    throw Failure(ExitCode::kInput, options.hand_eye.string() +
+                                        ": of no use, since no view has a pose of the flange");
+  }
+}
+
 /// Plans and drives; returns what the program should end with.
 ExitCode weld_seam(const Options& options, const Settings& settings, OutputFolder& folder,
                    const std::atomic<bool>& interrupted, Progress& progress, MotionJob& motion,
@@ -63,6 +75,12 @@ ExitCode weld_seam(const Options& options, const Settings& settings, OutputFolde
   }
   if (options.robot == "none") {
     return ExitCode::kDone;
+  }
+  if (!job.has_base) {
+    job.weld = false;
+    job.reason =
+        "no pose of the robot is known, so the path is not in its base: no robot is driven";
+    return ExitCode::kRefused;
   }
   const DriveReport drive = drive_robot(options.robot, settings.session, motion,
                                         folder.reserve("can.log"), interrupted, progress);
@@ -94,6 +112,7 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   }
   const std::vector<ScannedView> views =
       take_views(*source, T_flange_camera, interrupted, progress);
+  check_hand_eye(options, views);
 
   JobReport job;
   job.command = "weld";
@@ -107,7 +126,8 @@ ExitCode run(const Options& options, const Invocation& invocation) {
     code = weld_seam(options, settings, folder, interrupted, progress, motion, job);
   }
   if (interrupted) {
-    throw Failure(ExitCode::kDevice, "interrupted: the arc is off, nothing was written");
+    const std::string robot = job.warnings.empty() ? "" : "; " + job.warnings.back();
+    throw Failure(ExitCode::kDevice, "interrupted: nothing was written" + robot);
   }
   write_products(job, folder);
   print_summary(job, folder);

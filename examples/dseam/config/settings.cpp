@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "config/settings.hpp"
 
+#include <algorithm>
+
 #include "config/key_tables.hpp"
 
 namespace dseam::program {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr float kWideMm = 1.0e6F;
+constexpr double kWideMm = 1.0e6;
 
 std::vector<Key> job_keys(Settings& s) {
-  return {{"job", "method", choice(s.method, {"dseam", "paper"}),
-           "The chain of stages: this project's, or the paper's in the paper's order"},
-          {"job", "max_points", &s.max_points, "More points in the clouds of a command are refused",
-           "points", 1000, 16e6},
-          {"job", "max_seam_points", &s.max_seam_points, "Room for the points of seam.csv",
-           "points", 64, 1e6}};
+  return {
+      {"job", "method", choice(s.method, {"dseam", "paper"}),
+       "The chain of stages: this project's, or the paper's in the paper's order"},
+      {"job", "max_points", &s.max_points, "More points in the clouds of a command are refused",
+       "points", 1000, 16e6},
+      {"job", "max_voxels", &s.max_voxels, "Room for the voxels of a scan", "voxels", 1000, 64e6},
+      {"job", "max_seam_points", &s.max_seam_points, "Room for the points of seam.csv", "points",
+       64, 1e6}};
 }
 
 std::vector<Key> seam_keys(pipeline::SeamChain::Config& c) {
@@ -68,6 +72,44 @@ std::vector<Key> paper_keys(pipeline::PaperPipeline::Config& c) {
   return keys;
 }
 
+/// Which ring is meant where several are found.
+std::vector<Key> choice_keys(RingChoice& c) {
+  std::vector<Key> keys = {{"seam", "expected_radius_mm", &c.expected_radius_mm,
+                            "Of the nozzle that is meant; 0: any", "mm", 0, 10000}};
+  const std::string axes[] = {"x", "y", "z"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    keys.push_back({"seam", "region_min_" + axes[i] + "_mm", &c.region_min_mm[i],
+                    "Rings beyond are not meant", "mm", -kWideMm, kWideMm});
+    keys.push_back({"seam", "region_max_" + axes[i] + "_mm", &c.region_max_mm[i],
+                    "Rings beyond are not meant", "mm", -kWideMm, kWideMm});
+  }
+  return keys;
+}
+
+/// What decides every predicted sigma; the defaults are those of the simulated cell's devices.
+std::vector<Key> scanner_keys(Settings& s) {
+  splice::ViewNetwork::Config& network = s.pipeline.splice.network;
+  markers::MarkerFinder::Config& finder = s.pipeline.splice.finder;
+  return {
+      {"scanner", "sigma_mm", &s.seam.scanner_sigma_mm,
+       "Error that its calibration leaves, the same in all views", "mm", 0, 10},
+      {"scanner", "bowl_sigma_mm", &network.bowl_sigma_mm,
+       "Of a depth bowl at the sides of the image", "mm", 0.0001, 10},
+      {"scanner", "offset_sigma_mm", &network.offset_sigma_mm,
+       "Of an error that all depths have in common", "mm", 0.0001, 10},
+      {"scanner", "depth_sigma_mm", &finder.sigma_depth_mm,
+       "Of one depth, the share that neighbours have in common", "mm", 0.0001, 10},
+      {"scanner", "robot_sigma_mm", &network.reported_sigma_mm,
+       "Of a reported camera position, each axis", "mm", 0.001, 100},
+      {"scanner", "robot_sigma_rad", &network.reported_sigma_rad,
+       "Of a reported camera orientation, each axis", "rad", 1e-6, 0.5},
+      {"scanner", "min_marker_radius_mm", &finder.min_radius_mm, "Smaller discs are no markers",
+       "mm", 0.2, 100},
+      {"scanner", "max_marker_radius_mm", &finder.max_radius_mm, "Larger discs are no markers",
+       "mm", 0.2, 100},
+  };
+}
+
 std::vector<Key> map_keys(pipeline::WeldPipeline::Config& c) {
   return {
       {"map", "coarse_cell_mm", &c.coarse_cell_mm, "Cells in which the seam is first sought", "mm",
@@ -102,12 +144,28 @@ std::vector<Key> hand_eye_keys(calibration::HandEyeConfig& c) {
 }  // namespace
 
 pipeline::PaperPipeline::Config unconstrained_paper() {
+  constexpr auto kWide = static_cast<float>(kWideMm);
   pipeline::PaperPipeline::Config config;
   for (cloud::OrientedBox* box : {&config.passthrough, &config.constraints}) {
-    box->low_mm = {-kWideMm, -kWideMm, -kWideMm};
-    box->high_mm = {kWideMm, kWideMm, kWideMm};
+    box->low_mm = {-kWide, -kWide, -kWide};
+    box->high_mm = {kWide, kWide, kWide};
   }
   return config;
+}
+
+std::optional<pipeline::RegionOfInterest> RingChoice::region() const {
+  if (std::all_of(region_min_mm.begin(), region_min_mm.end(),
+                  [](double v) { return v <= -kWideMm; }) &&
+      std::all_of(region_max_mm.begin(), region_max_mm.end(),
+                  [](double v) { return v >= kWideMm; })) {
+    return std::nullopt;
+  }
+  return pipeline::RegionOfInterest{Eigen::Vector3d(region_min_mm.data()),
+                                    Eigen::Vector3d(region_max_mm.data())};
+}
+
+std::optional<double> RingChoice::radius_mm() const {
+  return expected_radius_mm > 0.0 ? std::optional(expected_radius_mm) : std::nullopt;
 }
 
 void append(std::vector<Key>& keys, const std::vector<Key>& more) {
@@ -118,7 +176,9 @@ std::vector<Key> keys_of(Settings& settings) {
   std::vector<Key> keys = job_keys(settings);
   append(keys, map_keys(settings.pipeline));
   append(keys, seam_keys(settings.seam));
+  append(keys, choice_keys(settings.ring));
   append(keys, paper_keys(settings.paper));
+  append(keys, scanner_keys(settings));
   append(keys, motion_keys(settings.motion));
   append(keys, session_keys(settings.session));
   append(keys, hand_eye_keys(settings.hand_eye));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <optional>
 #include <vector>
 
 #include "config/key.hpp"
@@ -20,6 +22,16 @@ enum class Method : std::uint8_t { kDseam, kPaper };
 /// The paper's values, with boxes so wide that nothing lies beyond.
 [[nodiscard]] pipeline::PaperPipeline::Config unconstrained_paper();
 
+/// Which ring is meant where a part has several.
+struct RingChoice {
+  double expected_radius_mm = 0.0;  ///< 0: any.
+  std::array<double, 3> region_min_mm{-1e6, -1e6, -1e6};
+  std::array<double, 3> region_max_mm{1e6, 1e6, 1e6};
+
+  [[nodiscard]] std::optional<pipeline::RegionOfInterest> region() const;
+  [[nodiscard]] std::optional<double> radius_mm() const;
+};
+
 /// Everything that can be configured, in the structs that the stages are made from.
 struct Settings {
   Method method = Method::kDseam;
@@ -27,6 +39,7 @@ struct Settings {
   std::uint32_t max_seam_points = 16384;
   std::uint32_t max_voxels = 600'000;
   pipeline::SeamChain::Config seam;
+  RingChoice ring;
   pipeline::PaperPipeline::Config paper = unconstrained_paper();
   pipeline::WeldPipeline::Config pipeline;  ///< Its `seam` is the one above.
   calibration::HandEyeConfig hand_eye;

@@ -64,7 +64,8 @@ HandEyeFile read_hand_eye(const std::filesystem::path& file) {
   const auto fail = [&file](const char* fault) {
     throw Failure(ExitCode::kInput, file.string() + ": " + fault);
   };
-  if (!content.is_object() || content.value("checksum", "") != checksum_of(content)) {
+  if (!content.is_object() || !content.contains("checksum") ||
+      content["checksum"] != checksum_of(content)) {
     fail("damaged: its checksum does not match");
   }
   const nlohmann::json units = content.value("units", nlohmann::json::object());

@@ -48,7 +48,10 @@ void ExtractJob::by_dseam(const Settings& settings, const LoadedCloud& cloud, St
                   std::string("the configured seam stage: ") + name(chain.error()));
   }
   Buffer<seam::SeamPoint> seam(points_);
-  job.seam_report = chain.value().run({.cloud_base = job.cloud_base}, seam);
+  job.seam_report = chain.value().run({.cloud_base = job.cloud_base,
+                                       .region = settings.ring.region(),
+                                       .expected_radius_mm = settings.ring.radius_mm()},
+                                      seam);
   job.stages.push_back({"seam", watch.lap_ms(), {{"points", static_cast<double>(seam.size())}}});
   job.seam_base = view_of(seam.view(), job.seam_report);
   job.reason = reason_of(job.seam_report, settings.seam);

@@ -7,6 +7,7 @@
 
 #include "job/stopwatch.hpp"
 #include "job/verdict.hpp"
+#include "report/page_tables.hpp"
 
 namespace dseam::program {
 namespace {
@@ -56,7 +57,13 @@ void add_stages(const StageTimer& timer, const pipeline::WeldReport& report, std
                                                        {"dropped", fuse.dropped_full}};
   };
   add(Stage::kTakeIn, {{"views", static_cast<double>(num_views)}});
-  add(Stage::kAdjust, {});
+  const splice::NetworkReport& network = report.network;
+  add(Stage::kAdjust, {{"iterations", network.iterations},
+                       {"views used", network.num_used},
+                       {"views left out", network.num_left_out},
+                       {"markers", network.num_markers},
+                       {"marker sights rejected", network.num_markers_rejected},
+                       {"surface ties", network.num_surface_ties}});
   add(Stage::kCoarseFuse, fused(report.coarse));
   add(Stage::kCoarseSeam, {});
   add(Stage::kFineFuse, fused(report.fine));
@@ -65,25 +72,9 @@ void add_stages(const StageTimer& timer, const pipeline::WeldReport& report, std
                      {"rings", report.seam.num_candidates}});
 }
 
-/// One standard deviation in any direction that the adjusted poses leave at `p_base`, the mean of
-/// all views that were used.
-double splice_sigma_mm(std::span<const splice::SplicedView> views, const Eigen::Vector3d& p_base) {
-  double variance = 0.0;
-  double used = 0.0;
-  for (const splice::SplicedView& view : views) {
-    if (view.state != splice::ViewState::kUsed) {
-      continue;
-    }
-    Eigen::Matrix<double, 3, 6> jacobian;
-    jacobian << Eigen::Matrix3d::Identity(), -geometry::skew(p_base);
-    variance += (jacobian * view.covariance * jacobian.transpose()).trace() / 3.0;
-    used += 1.0;
-  }
-  return used > 0.0 ? std::sqrt(variance / used) : 0.0;
-}
-
-/// The seam's predicted sigma, divided among what it comes from.
-void add_budget(const Settings& settings, JobReport& job) {
+/// What the seam's absolute place is uncertain by: how well it is known among the views, and how
+/// well the views together are known in the base.
+void add_budget(const splice::NetworkReport& network, JobReport& job) {
   if (job.seam_base.points.empty()) {
     return;
   }
@@ -91,13 +82,31 @@ void add_budget(const Settings& settings, JobReport& job) {
   for (const seam::SeamPoint& point : job.seam_base.points) {
     centre += point.p_base / static_cast<double>(job.seam_base.points.size());
   }
-  job.budget.push_back({"scan and fit", job.seam_report.quality.mean_sigma_lateral_mm,
-                        "mean predicted sigma across the seam, poses given"});
-  job.budget.push_back({"splice", splice_sigma_mm(job.views, centre),
-                        "covariance of the adjusted poses at the seam"});
-  if (settings.seam.hand_eye_sigma_mm > 0.0) {
+  job.budget.push_back({"seam among the views", job.seam_report.quality.mean_sigma_lateral_mm,
+                        "mean predicted sigma across the seam: scan, fit, splice and hand-eye"});
+  if (network.has_base) {
+    // Of three directions; one of them is across the seam.
     job.budget.push_back(
-        {"hand-eye", settings.seam.hand_eye_sigma_mm, "expected error of the calibration"});
+        {"base frame", splice::predicted_error_mm(network.base_covariance, centre) / std::sqrt(3.0),
+         "what all views have in common: the robot's reported poses, averaged"});
+  }
+}
+
+/// What became of views and poses that did not go as they should.
+void add_warnings(const splice::NetworkReport& network, JobReport& job) {
+  for (std::size_t i = 0; i < job.views.size(); ++i) {
+    const splice::SplicedView& view = job.views[i];
+    if (view.state != splice::ViewState::kUsed) {
+      job.warnings.push_back("view " + std::to_string(i) + " is left out: " + name(view.state));
+    }
+    if (view.reported_pose_rejected) {
+      job.warnings.push_back("view " + std::to_string(i) +
+                             ": the robot's pose contradicts all else and was not used");
+    }
+  }
+  if (!network.has_base && !job.views.empty()) {
+    job.warnings.push_back(
+        "no pose of the robot is known: all results are in the frame of the first camera");
   }
 }
 
@@ -109,6 +118,8 @@ std::string reason_of(pipeline::ScanFault fault) {
       return "no view was taken in";
     case pipeline::ScanFault::kUnspliced:
       return "no two views could be tied together: too few markers and too little overlap";
+    case pipeline::ScanFault::kNotAdjusted:
+      return "the views could not be adjusted to each other: the result did not settle";
     case pipeline::ScanFault::kMapFull:
       return "the part needs more voxels than the workspace has (job.max_voxels)";
   }
@@ -127,6 +138,8 @@ ScanJob::ScanJob(const Settings& settings, const std::vector<ScannedView>& views
   memory_ = std::make_unique<LentMemory>(pipeline::WeldPipeline::bytes(capacity));
   pipeline::WeldPipeline::Config config = settings.pipeline;
   config.seam = settings.seam;
+  config.region = settings.ring.region();
+  config.expected_radius_mm = settings.ring.radius_mm();
   const auto made = pipeline::WeldPipeline::make(config, capacity, memory_->arena());
   if (!made.ok()) {
     throw Failure(ExitCode::kUsage, std::string("the configured pipeline: ") + name(made.error()));
@@ -162,7 +175,9 @@ void ScanJob::describe(const pipeline::WeldReport& report, JobReport& job) {
   job.reason = report.fault == pipeline::ScanFault::kNone
                    ? program::reason_of(report.seam, settings_.seam)
                    : reason_of(report.fault);
-  add_budget(settings_, job);
+  job.has_base = report.network.has_base;
+  add_budget(report.network, job);
+  add_warnings(report.network, job);
 }
 
 }  // namespace dseam::program

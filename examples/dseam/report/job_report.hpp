@@ -36,7 +36,8 @@ struct JobReport {
   std::string input;
   std::string method = "dseam";
   bool weld = false;
-  std::string reason;  ///< Of the verdict, for people.
+  bool has_base = false;  ///< The frame is the robot's base, not that of the first camera.
+  std::string reason;     ///< Of the verdict, for people.
   std::vector<std::string> warnings;
   std::vector<StageRow> stages;
   std::vector<BudgetRow> budget;

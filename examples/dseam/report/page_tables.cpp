@@ -39,6 +39,7 @@ std::string count_text(double count) {
 const char* name(splice::ViewState state) noexcept {
   constexpr std::array kNames{"used",  "no overlap", "contradicts", "unobservable",
                               "empty", "duplicate",  "ambiguous"};
+  static_assert(kNames.size() == splice::kNumViewStates);
   return kNames[static_cast<std::size_t>(state)];
 }
 

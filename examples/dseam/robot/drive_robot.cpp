@@ -70,7 +70,8 @@ void write_log(hal::candump::RecordingBus& bus, const std::filesystem::path& fil
 
 std::string fault_of(const WeldOutcome& outcome) {
   if (outcome.interrupted) {
-    return "interrupted: the arc was turned off first";
+    return outcome.health.arc_on ? "arc-off was sent, and the robot did NOT confirm it"
+                                 : "the robot confirmed that the arc is off";
   }
   if (outcome.fault != rt::Fault::kNone) {
     return std::string("the weld was stopped: ") + rt::name(outcome.fault);

@@ -98,7 +98,7 @@ void PaperPipeline::constrain(Report& report) noexcept {
   rim_.clear();
   for (const std::uint32_t i : kept_.view()) {
     const geometry::Vec3f p = points_.view()[i];
-    (void)rim_.append({p.x, p.y, p.z});
+    (void)rim_.append(Eigen::Vector3f(p.x, p.y, p.z).cast<double>());
   }
   report.constrained = static_cast<std::uint32_t>(rim_.size());
 }

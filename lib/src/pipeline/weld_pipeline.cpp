@@ -58,6 +58,11 @@ bool may_be_too_coarse(seam::Refusal refusal) noexcept {
   return refusal == seam::Refusal::kNoRing || refusal == seam::Refusal::kOneSurface;
 }
 
+bool stands(const splice::NetworkReport& network) noexcept {
+  return network.state == splice::NetworkState::kAdjusted ||
+         network.state == splice::NetworkState::kOneView;
+}
+
 bool any_used(std::span<const splice::SplicedView> views) noexcept {
   return std::any_of(views.begin(), views.end(), [](const splice::SplicedView& view) {
     return view.state == splice::ViewState::kUsed;
@@ -67,7 +72,7 @@ bool any_used(std::span<const splice::SplicedView> views) noexcept {
 }  // namespace
 
 const char* name(ScanFault fault) noexcept {
-  constexpr const char* kNames[] = {"None", "NoView", "Unspliced", "MapFull"};
+  constexpr const char* kNames[] = {"None", "NoView", "Unspliced", "NotAdjusted", "MapFull"};
   return kNames[static_cast<std::uint8_t>(fault)];
 }
 
@@ -159,7 +164,9 @@ WeldReport WeldPipeline::finish(StageObserver* observer) noexcept {
   }
   report.network = splice_->finish(views_);
   tell(observer, Stage::kAdjust);
-  report.fault = any_used(views_.view()) ? ScanFault::kNone : ScanFault::kUnspliced;
+  report.fault = !any_used(views_.view())  ? ScanFault::kUnspliced
+                 : !stands(report.network) ? ScanFault::kNotAdjusted
+                                           : ScanFault::kNone;
   if (report.fault == ScanFault::kNone && find_coarsely(report, observer)) {
     find_finely(report, observer);
   }

@@ -26,6 +26,9 @@ bool is_fault_of_input(Refusal refusal) noexcept {
   switch (refusal) {
     case Refusal::kEmptyCloud:
     case Refusal::kNotMillimetres:
+    case Refusal::kCoplanar:
+    case Refusal::kOneSurface:
+    case Refusal::kNoRing:
     case Refusal::kOutsideRegion:
     case Refusal::kNoSuchReference:
     case Refusal::kFull:

@@ -21,9 +21,10 @@ namespace dseam::pipeline {
 /// Why a scan gives no seam before the seam is even sought, or kNone.
 enum class ScanFault : std::uint8_t {
   kNone,
-  kNoView,     ///< No frame was taken in.
-  kUnspliced,  ///< No two views could be tied together, or the only one has no surface.
-  kMapFull,    ///< The part needs more voxels than the workspace has; nothing is made of the rest.
+  kNoView,       ///< No frame was taken in.
+  kUnspliced,    ///< No two views could be tied together, or the only one has no surface.
+  kNotAdjusted,  ///< The adjustment of all views did not come to rest, or a direction is free.
+  kMapFull,  ///< The part needs more voxels than the workspace has; nothing is made of the rest.
 };
 [[nodiscard]] const char* name(ScanFault fault) noexcept;
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -25,6 +26,7 @@ enum class ViewState : std::uint8_t {
   kDuplicate,     ///< The same frame as an earlier view.
   kAmbiguous,     ///< It fits in several places.
 };
+inline constexpr std::size_t kNumViewStates = 7;
 
 /// A view after the adjustment of all views together.
 ///
