@@ -27,6 +27,7 @@ class NearestOfAll {
   void run(const Done& done) noexcept {
     for (std::uint32_t block = 0; block < tree_.num_blocks(); ++block) {
       const bool fits = collect(block);
+      crowded_ = false;
       for (std::uint32_t at = CellTree::first_of(block); at < tree_.end_of(block); ++at) {
         const Cell& cell = tree_.cells()[at];
         const QueryCell query(cell);
@@ -41,8 +42,6 @@ class NearestOfAll {
             fits && groups_[at % kLanes].lanes == kAll && largest(best.least[k_ - 1]) <= reach_mm2_;
         done(at, best, covered);
       }
-      guess_mm2_ *= fits ? 1.0F : kTooMany;
-      guess_mm2_ = std::clamp(guess_mm2_, kLeastGuess, kMostGuess);
     }
   }
   [[nodiscard]] NearPoints& near() noexcept { return near_; }
@@ -50,11 +49,12 @@ class NearestOfAll {
  private:
   static constexpr float kGrow = 1.2F;  ///< These two make one guess in ten fall short.
   static constexpr float kShrink = 0.98F;
-  static constexpr float kTooMany = 0.7F;
   static constexpr float kWiden = 1.5F;  ///< Of the block beyond the guess for a cell.
   static constexpr float kStretched =
       64.0F;  ///< Cells this much larger than the guess hold a stray.
   static constexpr float kStray = 16.0F;
+  static constexpr float kFarTooMuch = 16.0F;
+  static constexpr float kInfinity = std::numeric_limits<float>::infinity();
   static constexpr std::size_t kCompany = 4;
   static constexpr float kLeastGuess = 1.0e-12F;
   static constexpr float kMostGuess = 1.0e15F;
@@ -114,23 +114,38 @@ class NearestOfAll {
   // The block had too many; a cell alone may not.
   void look_farther(std::uint32_t at, const QueryCell& query,
                     LeastDistances<kRoom>& best) noexcept {
-    const NearView points = near_.others_around(at, groups_[at % kLanes].box, reach_mm2_);
-    if (points.count == 0) {
-      look_through_tree(at, query, best);
-    } else {
+    const Group& group = groups_[at % kLanes];
+    if (!crowded_ && group.lanes != 0) {
+      const NearView points = near_.others_around(at, group.box, reach_mm2_);
       best.insert_all(query, points);
+      crowded_ = points.count == 0;
     }
-    finish(at, points.count == 0 ? std::numeric_limits<float>::infinity() : reach_mm2_, best);
+    if (crowded_) {
+      look_through_tree(at, query, best);
+    }
+    finish(at, crowded_ ? kInfinity : reach_mm2_, best);
   }
   // `best` knows of all within `seen_mm2` of the cell's group.
   void finish(std::uint32_t at, float seen_mm2, LeastDistances<kRoom>& best) noexcept {
     const std::uint32_t group = groups_[at % kLanes].lanes;
-    guess_mm2_ *= farthest_of(group, best) > guess_mm2_ ? kGrow : kShrink;
-    const bool saw_all = seen_mm2 == std::numeric_limits<float>::infinity();
     const std::uint32_t beyond = bits(lanes::splat(seen_mm2) < best.least[k_ - 1]) | ~group;
-    if (!saw_all && (beyond & kAll) != 0) {
+    if (seen_mm2 < kInfinity && (beyond & kAll) != 0) {
       look_alone(at, beyond & kAll, best);
     }
+    learn(group, best);
+  }
+  // Upwards in small steps, since a few strays say little; down at once where all eight say so.
+  void learn(std::uint32_t group, const LeastDistances<kRoom>& best) noexcept {
+    const float nearest_mm2 = least(best.least[k_ - 1]);
+    const float farthest_mm2 = largest(best.least[k_ - 1]);
+    if (nearest_mm2 > guess_mm2_) {
+      guess_mm2_ *= kGrow;
+    } else if (farthest_mm2 * kFarTooMuch < guess_mm2_) {
+      guess_mm2_ = farthest_mm2 * kFarTooMuch;
+    } else {
+      guess_mm2_ *= farthest_of(group, best) > guess_mm2_ ? kGrow : kShrink;
+    }
+    guess_mm2_ = std::clamp(guess_mm2_, kLeastGuess, kMostGuess);
   }
   [[nodiscard]] float farthest_of(std::uint32_t group,
                                   const LeastDistances<kRoom>& best) const noexcept {
@@ -172,7 +187,7 @@ class NearestOfAll {
       near.offer(EightPoints::of(others, i), point);
     }
     if (others.count == 0 || near.size() < found.size()) {
-      NearestList all(found, std::numeric_limits<float>::infinity());
+      NearestList all(found, kInfinity);
       offer_all(tree_, point, all);
     }
   }
@@ -202,6 +217,7 @@ class NearestOfAll {
   std::size_t k_;
   float guess_mm2_ = 1.0F;
   float reach_mm2_ = 0.0F;
+  bool crowded_ = false;  ///< Even around one cell of the block there are too many.
   std::array<Group, kLanes> groups_;
 };
 
