@@ -66,7 +66,7 @@ broken() {
 }
 
 # The views of the set are shown to two cameras of the kernel's, the depth to one and the gray to the
-# other; nobody tells where they were taken, so that the markers alone must join them.
+# other, as if a robot had driven the camera to its taught poses.
 vivid() {
   touch /out/vivid.log
   "$player" "$set" /out/vivid.log >/out/player.log 2>&1 &
@@ -74,7 +74,8 @@ vivid() {
   until [ -s /out/player.log ]; do sleep 0.1; done
   whole vivid --camera v4l2:/dev/video0 --set 'camera.gray_device="/dev/video2"' --set 'camera.format="Y16"' \
     --set camera.width=1280 --set camera.height=720 --set camera.mm_per_count=0.015625 \
-    --set camera.focal_px=2048 --set camera.settle_s=0.5 --set path.speed_mm_s=16
+    --set camera.focal_px=2048 --set camera.settle_s=0.5 \
+    --set "camera.poses=\"$set/scene_camera.json\"" --set path.speed_mm_s=16
   kill $shown || { failed=1; echo "FAILED main job, vivid: $(tail -1 /out/player.log)"; }
 }
 

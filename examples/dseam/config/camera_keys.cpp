@@ -9,6 +9,8 @@ std::vector<Key> camera_keys(LiveSettings& c) {
       {"camera", "settle_s", &c.settle_s,
        "After a view, frames are thrown away for so long: the time to drive to the next", "s", 0,
        600},
+      {"camera", "poses", &c.poses,
+       "A scene_camera.json with the pose of each view, as it was taught; empty for none"},
       {"camera", "gray_device", &c.gray_device,
        "V4L2: a second node that gives the gray image; empty for none"},
       {"camera", "width", &c.width, "V4L2: columns; 0 as the device has them", "pixels", 0, 8192},

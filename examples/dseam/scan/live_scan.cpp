@@ -6,6 +6,7 @@
 
 #include "dseam/hal/paired_camera.hpp"
 #include "failure.hpp"
+#include "scan/taught_poses.hpp"
 #ifdef DSEAM_HAS_ARAVIS
 #include "dseam/hal/aravis/aravis_camera.hpp"
 #endif
@@ -24,7 +25,10 @@ class LiveScan final : public ScanSource {
  public:
   LiveScan(std::unique_ptr<Camera> camera, std::unique_ptr<Camera> gray, std::string name,
            const LiveSettings& settings)
-      : camera_(std::move(camera)), gray_(std::move(gray)), name_(std::move(name)) {
+      : camera_(std::move(camera)),
+        gray_(std::move(gray)),
+        name_(std::move(name)),
+        poses_(settings.poses) {
     num_views_ = settings.views;
     settle_ = std::chrono::duration<double>(settings.settle_s);
     if (gray_ != nullptr) {
@@ -36,7 +40,7 @@ class LiveScan final : public ScanSource {
   hal::DepthCamera& camera() override {
     return both_ ? static_cast<hal::DepthCamera&>(*both_) : *camera_;
   }
-  hal::RobotState* robot_state() override { return nullptr; }
+  hal::RobotState* robot_state() override { return poses_.known() ? &poses_ : nullptr; }
   [[nodiscard]] std::size_t num_views() const override { return num_views_; }
   [[nodiscard]] std::string description() const override { return name_; }
 
@@ -46,6 +50,7 @@ class LiveScan final : public ScanSource {
     while (std::chrono::steady_clock::now() < until) {
       (void)camera().next(10ms);
     }
+    poses_.advance();
   }
 
  private:
@@ -53,6 +58,7 @@ class LiveScan final : public ScanSource {
   std::unique_ptr<Camera> gray_;
   std::optional<hal::PairedCamera> both_;
   std::string name_;
+  TaughtPoses poses_;
   std::size_t num_views_ = 0;
   std::chrono::duration<double> settle_{0.0};
 };

@@ -10,6 +10,7 @@ namespace dseam::program {
 struct LiveSettings {
   std::uint32_t views = 6;
   double settle_s = 0.0;    ///< What came earlier than this after the view before is not used.
+  std::string poses;        ///< scene_camera.json with the camera's taught poses.
   std::string gray_device;  ///< V4L2: a second node with the gray image.
   std::uint32_t width = 0;  ///< V4L2; 0: as the device has it.
   std::uint32_t height = 0;
