@@ -157,7 +157,7 @@ void JointFit::model(Side& side, Surface& surface) noexcept {
       return;
     }
     side.residual.inflate(neighbour_correlation(side, count));
-    if (round + 1 < kModelRounds) {
+    if (&side == &nozzle_ && round + 1 < kModelRounds) {  // Seen all round, unlike the shell.
       surface = side.residual.move_into(surface);
     }
     measure(side, surface);

@@ -8,6 +8,8 @@ namespace dseam::seam {
 namespace {
 
 constexpr double kRidge = 1e-7;
+// In mm and rad: a larger change is a trade with a deviation that looks alike on a short arc.
+constexpr double kMaxMove = 1.5;
 constexpr std::size_t kFirstHarmonic = kMaxSurfaceParameters + ResidualModel::kOvalColumns;
 
 // Harmonics 0..K of an angle: 1, cos, sin, cos 2, sin 2, ...
@@ -142,6 +144,9 @@ double ResidualModel::squares(const Columns& columns, const Row& solution) const
 Surface ResidualModel::move_into(const Surface& surface) noexcept {
   SurfaceVector step;
   std::copy_n(fitted_[0].solution.begin(), kMaxSurfaceParameters, step.data());
+  if (!(step.cwiseAbs().maxCoeff() < kMaxMove)) {
+    return surface;
+  }
   fitted_[0].surface = stepped(surface, -step);
   std::fill_n(fitted_[0].solution.begin(), kMaxSurfaceParameters, 0.0);
   return fitted_[0].surface;
