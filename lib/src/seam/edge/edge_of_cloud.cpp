@@ -59,8 +59,7 @@ void EdgeScanner::run(const JointFit& fit, double spacing_mm) noexcept {
     for (std::size_t k = 0; k < kNearest; ++k) {
       edge_mm += (bin.shell_mm[k] - static_cast<double>(k + 1) * step_mm) / double{kNearest};
     }
-    const bool gap = edge_mm < kNothing / double{kNearest} &&
-                     edge_mm > kMinGapSpacings * spacing_mm &&
+    const bool gap = bin.shell_mm.back() < kNothing && edge_mm > kMinGapSpacings * spacing_mm &&
                      bin.nozzle_mm < kLowestShare * edge_mm + 0.5 * spacing_mm;
     if (gap) {
       const double phi = kTurnRad * (static_cast<double>(i) + 0.5) / double{kBins};
