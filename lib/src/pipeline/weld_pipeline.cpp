@@ -55,7 +55,8 @@ cloud::OrientedBox box_of(const std::optional<RegionOfInterest>& region) noexcep
 constexpr std::size_t kFinerVoxels = 5;  // At half the size; four, and some for the noise.
 
 bool may_be_too_coarse(seam::Refusal refusal) noexcept {
-  return refusal == seam::Refusal::kNoRing || refusal == seam::Refusal::kOneSurface;
+  return refusal == seam::Refusal::kNoRing || refusal == seam::Refusal::kOneSurface ||
+         refusal == seam::Refusal::kTwoRings;
 }
 
 bool stands(const splice::NetworkReport& network) noexcept {

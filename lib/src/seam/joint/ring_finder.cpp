@@ -21,6 +21,7 @@ constexpr double kMinWallMm = 1.5;
 constexpr double kOutside =
     4.0;  // What an outside is preferred to a bore by: it may be half hidden.
 constexpr double kCoaxialCosine = 0.99;
+constexpr double kMaxOffAxisMm = 5.0;
 constexpr double kMaxOffAxisShare = 0.1;  // Of the radius.
 constexpr double kOtherSideCosine = -0.1;
 
@@ -74,7 +75,9 @@ bool contains(const RingHint& hint, const Eigen::Vector3d& p) noexcept {
 bool is_coaxial(const RingCandidate& a, const RingCandidate& b) noexcept {
   const Eigen::Vector3d between = a.centre_base - b.centre_base;
   return std::abs(a.axis_base.dot(b.axis_base)) > kCoaxialCosine &&
-         between.cross(b.axis_base).norm() < kMaxOffAxisShare * std::max(a.radius_mm, b.radius_mm);
+         between.cross(b.axis_base).norm() <
+             std::max(
+                 {kMaxOffAxisMm, kMaxOffAxisShare * a.radius_mm, kMaxOffAxisShare * b.radius_mm});
 }
 
 // A large ring is seldom backed all round by chance, but easily along a long stretch.
