@@ -42,7 +42,8 @@ std::optional<Place> PlaceFinder::outside_joint(double phi_rad, double distance_
   if (!start) {
     return std::nullopt;
   }
-  Vector3d away = open ? Vector3d::UnitY() : Vector3d(std::cos(phi_rad), std::sin(phi_rad), 0.0);
+  const double turn = phi_rad + joint_.nozzle_ovality_angle_rad;  // phi starts at the longer axis.
+  Vector3d away = open ? Vector3d::UnitY() : Vector3d(std::cos(turn), std::sin(turn), 0.0);
   if (joint_.kind == JointKind::kButt && std::sin(phi_rad) < 0.0) {
     away = -away;
   }

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dseam/hal/sim/cell_config.hpp"
+
+namespace dseam::test {
+
+/// One row of the table of splice errors, and what is asked of it.
+struct SpliceRow {
+  const char* name;
+  std::uint32_t markers;
+  double ovality_mm;
+  bool without_reports;  ///< Markers alone must place the views.
+  double median_mm;      ///< Of the splice error at the seam, over the seeds; 0: not asked.
+  double p95_mm;         ///< Asked of 200 seeds and more.
+};
+[[nodiscard]] std::span<const SpliceRow> splice_rows() noexcept;
+
+/// What came of one seed.
+struct SpliceOutcome {
+  bool spliced = false;  ///< All views; otherwise nothing below is set.
+  double rms_mm = 0.0;
+  double predicted_mm = 0.0;
+  std::vector<double> view_nees;  ///< Six degrees of freedom each.
+  double base_nees = 0.0;
+  bool has_base = false;
+};
+[[nodiscard]] SpliceOutcome splice_seed(const SpliceRow& row, std::uint64_t seed);
+
+/// All seeds of a row.
+struct SpliceTable {
+  std::vector<double> rms_mm;
+  std::vector<double> predicted_mm;
+  std::uint64_t worst_seed = 0;
+  double worst_mm = 0.0;
+  int refused = 0;
+  int views = 0;
+  int views_inside = 0;  ///< The ellipsoid that 95 % should lie in.
+  int bases = 0;
+  int bases_inside = 0;
+  double sum_view_nees = 0.0;
+  double sum_base_nees = 0.0;
+
+  void add(std::uint64_t seed, const SpliceOutcome& outcome);
+  void print(const SpliceRow& row) const;
+  /// Whether the row's figures hold, as far as these seeds can tell.
+  [[nodiscard]] bool holds(const SpliceRow& row) const;
+};
+
+}  // namespace dseam::test
