@@ -24,6 +24,8 @@ constexpr double kCoaxialCosine = 0.99;
 constexpr double kMaxOffAxisMm = 5.0;
 constexpr double kMaxOffAxisShare = 0.1;  // Of the radius.
 constexpr double kOtherSideCosine = -0.1;
+constexpr double kSamePlaceShare = 0.15;  // Of the radius.
+constexpr double kSameRadiusShare = 0.1;
 
 // What lies around a ring, bin by bin of the angle about the nozzle.
 struct Support {
@@ -78,6 +80,12 @@ bool is_coaxial(const RingCandidate& a, const RingCandidate& b) noexcept {
          between.cross(b.axis_base).norm() <
              std::max(
                  {kMaxOffAxisMm, kMaxOffAxisShare * a.radius_mm, kMaxOffAxisShare * b.radius_mm});
+}
+
+// Two fits of one wall, the worse one led astray by what stands beside it: no choice to be made.
+bool is_same_wall(const RingCandidate& a, const RingCandidate& b) noexcept {
+  return (a.centre_base - b.centre_base).norm() < kSamePlaceShare * a.radius_mm &&
+         std::abs(a.radius_mm - b.radius_mm) < kSameRadiusShare * a.radius_mm;
 }
 
 // A large ring is seldom backed all round by chance, but easily along a long stretch.
@@ -171,7 +179,7 @@ void RingFinder::consider(std::span<const Cell> cells, const Joint& given, doubl
 
 // One ring may be found from two surfaces that describe the same wall: the better one stays.
 void RingFinder::keep(const RingCandidate& ring, const Joint& joint) noexcept {
-  const double near_mm = 0.15 * ring.radius_mm;
+  const double near_mm = kSamePlaceShare * ring.radius_mm;
   for (std::size_t i = 0; i < rings_.size(); ++i) {
     if ((rings_[i].centre_base - ring.centre_base).norm() < near_mm &&
         std::abs(rings_[i].radius_mm - ring.radius_mm) < kMinWallMm) {
@@ -216,7 +224,8 @@ RingFinder::Choice RingFinder::choose(SeamReport& report) noexcept {
   if (best != rings_.size()) {
     choice = {Refusal::kNone, joints_[best]};
     for (std::size_t i = 0; i < rings_.size(); ++i) {
-      if (i != best && eligible(i) && merit_of(rings_[i]) > kEqualShare * merit_of(rings_[best])) {
+      if (i != best && eligible(i) && !is_same_wall(rings_[i], rings_[best]) &&
+          merit_of(rings_[i]) > kEqualShare * merit_of(rings_[best])) {
         rings_[i].fate = RingFate::kEqual;
         choice.refusal = Refusal::kTwoRings;
       }
