@@ -16,7 +16,7 @@ Result<BlobFinder> BlobFinder::make(const Config& config, std::uint32_t width,
   finder.config_ = config;
   finder.width_ = width;
   if (config.half_window_px == 0) {
-    finder.config_.half_window_px = std::max(4U, width / 30);
+    finder.config_.half_window_px = std::max<std::uint32_t>(4, width / 30);
   }
   finder.blobs_ = arena.take<Blob>(kMaxBlobs);
   finder.column_sums_ = arena.take<std::uint32_t>(width);
@@ -38,14 +38,14 @@ BlobFinder::Report BlobFinder::run(std::span<const std::uint8_t> gray) noexcept 
     add_row(gray, v, 1);
   }
   std::size_t count_above = 0;
-  for (std::int32_t v = 0; v < std::min(height, 65535); ++v) {
+  for (std::int32_t v = 0; v < std::min<std::int32_t>(height, 65535); ++v) {
     if (v + half < height) {
       add_row(gray, v + half, 1);
     }
     if (v - half - 1 >= 0) {
       add_row(gray, v - half - 1, -1);
     }
-    const std::int32_t rows = std::min(v + half, height - 1) - std::max(v - half, 0) + 1;
+    const std::int32_t rows = std::min(v + half, height - 1) - std::max<std::int32_t>(v - half, 0) + 1;
     const std::size_t count = find_runs(gray.subspan(static_cast<std::size_t>(v) * width_, width_),
                                         static_cast<std::uint32_t>(rows));
     connect(count, count_above, static_cast<std::uint16_t>(v), report);

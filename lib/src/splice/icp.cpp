@@ -81,7 +81,7 @@ Icp::Sums Icp::pair_up(const cloud::CloudView& source, const cloud::CloudView& t
                        double gate_mm) const noexcept {
   Sums sums;
   const bool to_plane = config_.metric == IcpMetric::kPointToPlane;
-  for (std::size_t i = 0; i < source.size(); i += std::max(1U, config_.stride)) {
+  for (std::size_t i = 0; i < source.size(); i += std::max<std::uint32_t>(1, config_.stride)) {
     const Eigen::Vector3d p = T * at(source, i);
     if (!p.allFinite()) {
       continue;

@@ -86,7 +86,7 @@ LiveSplicer::Report LiveSplicer::run(const PosedView& start,
     tie(view, others, pivot, gate, sums);
     report.num_ties = sums.near;
     report.rms_mm = sums.weight > 0.0 ? std::sqrt(sums.squares / sums.weight) : 0.0;
-    report.share_near = static_cast<double>(sums.near) / std::max(1U, sums.wide);
+    report.share_near = static_cast<double>(sums.near) / std::max<std::uint32_t>(1, sums.wide);
     if (sums.near < config_.min_ties) {
       report.state = State::kNoOverlap;
       return report;

@@ -94,7 +94,7 @@ void measure(const Block& block, SurfacePatch& patch) noexcept {
     const float r = block.used[k] ? residual(block, patch, k) : 0.0F;
     squares += r * r;
   }
-  patch.rms_mm = std::sqrt(squares / static_cast<float>(std::max(block.count, 1U)));
+  patch.rms_mm = std::sqrt(squares / static_cast<float>(std::max<std::uint32_t>(block.count, 1)));
 }
 
 void drop_outliers(const SurfacePatch& patch, float gate_mm, Block& block) noexcept {

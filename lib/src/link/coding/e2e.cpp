@@ -91,8 +91,8 @@ E2eState E2eWindow::add(E2eStatus status) noexcept {
   next_ = (next_ + 1) % kWindow;
   filled_ = std::min(filled_ + 1, kWindow);
   const auto seen = std::span(recent_).first(filled_);
-  const auto ok = std::ranges::count_if(seen, usable);
-  const auto errors = std::ranges::count(seen, E2eStatus::kError);
+  const auto ok = static_cast<std::size_t>(std::ranges::count_if(seen, usable));
+  const auto errors = static_cast<std::size_t>(std::ranges::count(seen, E2eStatus::kError));
 
   if (errors > kMaxErrors || (filled_ == kWindow && ok < kMinOk)) {
     state_ = E2eState::kInvalid;

@@ -44,7 +44,7 @@ ResidualStats stats_of(const JointFit& fit, const JointFit::Side& side, bool she
   }
   if (stats.count > 0) {
     const auto place = scratch.begin() + static_cast<std::ptrdiff_t>(stats.count * 95 / 100);
-    std::nth_element(scratch.begin(), place, scratch.begin() + stats.count);
+    std::nth_element(scratch.begin(), place, scratch.begin() + static_cast<std::ptrdiff_t>(stats.count));
     stats.p95_mm = double{*place};
     stats.rms_mm = std::sqrt(squares / stats.count);
   }

@@ -132,8 +132,8 @@ EdgeScanner::Window EdgeScanner::window_of(const depth::Intrinsics& k) noexcept 
 void EdgeScanner::mark(const PixelPlace& at, const depth::Intrinsics& k, Window& w) noexcept {
   const std::uint32_t bu = at.u / kBlock;
   const std::uint32_t bv = at.v / kBlock;
-  for (std::uint32_t y = bv - std::min(bv, 1U); y <= std::min(bv + 1, kBlocksAcross - 1); ++y) {
-    for (std::uint32_t x = bu - std::min(bu, 1U); x <= std::min(bu + 1, kBlocksAcross - 1); ++x) {
+  for (std::uint32_t y = bv - std::min<std::uint32_t>(bv, 1); y <= std::min(bv + 1, kBlocksAcross - 1); ++y) {
+    for (std::uint32_t x = bu - std::min<std::uint32_t>(bu, 1); x <= std::min(bu + 1, kBlocksAcross - 1); ++x) {
       blocks_[y * kBlocksAcross + x] = 1;
     }
   }

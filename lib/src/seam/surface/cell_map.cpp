@@ -104,7 +104,7 @@ void CellMap::fill(const cloud::FusedCloudView& in, Report& report) noexcept {
     ++report.num_points;
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
-    const Eigen::Vector3i key = scaled.array().floor().cast<std::int32_t>();
+    const Eigen::Vector3i key = scaled.array().floor().cast<int>();
     if (!add({key.x(), key.y(), key.z()}, p - pivot_,
              in.seen_by.empty() ? cloud::ViewMask{0} : in.seen_by[i])) {
       report.full = true;
@@ -137,7 +137,7 @@ bool CellMap::add(const Key& key, const Eigen::Vector3d& p, cloud::ViewMask seen
 // The slot of the key, or the free one where it belongs. The table is at most half full.
 std::uint32_t CellMap::find_slot(const Key& key) const noexcept {
   const std::size_t mask = slots_.size() - 1;
-  std::size_t i = mixed(key.x, key.y, key.z) & mask;
+  auto i = static_cast<std::size_t>(mixed(key.x, key.y, key.z) & mask);
   while (slots_[i] != 0 && !(keys_[slots_[i] - 1] == key)) {
     i = (i + 1) & mask;
   }
