@@ -19,6 +19,8 @@ end_robot() {
 }
 of_robot() { sed -n "s/.*$2.*/\\1/p" "/out/$1-robot.log"; }
 
+of_report() { sed -n "s/.*\"$2\": *\"\\([0-9]*\\)\".*/\\1/p" "/out/$1/report.json"; }
+
 # judge NAME TEXT CONDITION...
 judge() {
   local name=$1 text=$2
@@ -40,10 +42,10 @@ whole() {
   timeout 300 "$dseam" weld "$@" --robot can:vcan0 --out "/out/$name" >"/out/$name.log" 2>&1
   rc=$?
   end_robot
-  sent=$(sed -n 's/.*"set points sent": *"\([0-9]*\)".*/\1/p' "/out/$name/report.json")
+  sent=$(($(of_report "$name" 'set points sent') - $(of_report "$name" 'set points sent again')))
   executed=$(of_robot "$name" 'executed \([0-9]*\) set points')
   judge "$name" "exit $rc, $sent set points sent, $executed executed" \
-    $rc = 0 -a "${sent:-no}" = "${executed:-none}"
+    $rc = 0 -a "$sent" -gt 0 -a "$sent" = "${executed:-none}"
 }
 
 # broken SIGNAL OPTION...: the signal comes while the arc burns; the robot must have been told.
