@@ -1,27 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "run_program.hpp"
-#include "support/data_dir.hpp"
+#include "support/measured_data.hpp"
 
 namespace dseam::program {
 namespace {
 
 using test::Outcome;
 using test::run_program;
+using MeasuredFit = dseam::test::MeasuredData;
 
-TEST(Fit, the_papers_points_become_one_closed_curve) {
+TEST_F(MeasuredFit, the_papers_points_become_one_closed_curve) {
   const test::ScratchFolder scratch;
   const std::filesystem::path points = dseam::test::data_dir() / "paper_weld_points.csv";
-  if (!std::filesystem::exists(points)) {
-    ASSERT_EQ(std::getenv("CI"), nullptr) << points << " is missing";
-    GTEST_SKIP() << points << " is missing";
-  }
 
   const Outcome outcome = run_program({"fit", points.string(), "--out", scratch.path("out")});
 

@@ -11,10 +11,12 @@
 #include "dseam/markers/marker_finder.hpp"
 #include "support/allocation_counter.hpp"
 #include "support/arena_owner.hpp"
-#include "support/data_dir.hpp"
+#include "support/measured_data.hpp"
 
 namespace dseam::markers {
 namespace {
+
+using Photographs = test::MeasuredData;
 
 struct Photograph {
   std::uint32_t width = 0;
@@ -59,7 +61,7 @@ std::vector<Eigen::Vector2d> find(const Photograph& photo) {
   return centres;
 }
 
-TEST(Photograph, dots_are_found_without_false_ones_to_a_quarter_of_a_pixel) {
+TEST_F(Photographs, dots_are_found_without_false_ones_to_a_quarter_of_a_pixel) {
   constexpr int kPhotographs = 15;
   constexpr double kDots = 100.0 * kPhotographs;
   double on_grid = 0.0;
