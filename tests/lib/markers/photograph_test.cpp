@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The detector on photographs that nobody made for it: 15 pictures of a 10 x 10 dot target.
 #include <gtest/gtest.h>
-#include <png.h>
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "dot_grid.hpp"
-#include "dseam/markers/marker_finder.hpp"
-#include "support/allocation_counter.hpp"
-#include "support/arena_owner.hpp"
+#include "photographs.hpp"
 #include "support/measured_data.hpp"
 
 namespace dseam::markers {
@@ -18,60 +14,24 @@ namespace {
 
 using Photographs = test::MeasuredData;
 
-struct Photograph {
-  std::uint32_t width = 0;
-  std::uint32_t height = 0;
-  std::vector<std::uint8_t> gray;
-};
-
-Photograph load(int index) {
-  const auto path =
-      test::data_dir() / "circle_grid_handeye" / "images" / (std::to_string(index) + ".png");
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  Photograph out;
-  if (png_image_begin_read_from_file(&image, path.c_str()) == 0) {
-    return out;
-  }
-  image.format = PNG_FORMAT_GRAY;
-  out.width = image.width;
-  out.height = image.height;
-  out.gray.resize(PNG_IMAGE_SIZE(image));
-  png_image_finish_read(&image, nullptr, out.gray.data(), 0, nullptr);
-  return out;
-}
-
-std::vector<Eigen::Vector2d> find(const Photograph& photo) {
-  test::ArenaOwner owner(MarkerFinder::bytes(photo.width));
-  auto finder = MarkerFinder::make({}, photo.width, owner.arena());
-  std::vector<Marker> storage(1024);
-  Buffer<Marker> found(storage);
-  depth::DepthImage frame;
-  frame.intrinsics = {photo.width, photo.height, 550.0, 550.0, 320.0, 240.0};
-  frame.gray = photo.gray;
-
-  const test::AllocationCounter allocations;
-  (void)finder.value().run(frame, found);
-  EXPECT_EQ(allocations.count(), 0U);
-
+std::vector<Eigen::Vector2d> centres_of(const std::vector<Marker>& dots) {
   std::vector<Eigen::Vector2d> centres;
-  for (const Marker& marker : found.view()) {
-    centres.emplace_back(marker.u, marker.v);
+  for (const Marker& dot : dots) {
+    centres.emplace_back(dot.u, dot.v);
   }
   return centres;
 }
 
 TEST_F(Photographs, dots_are_found_without_false_ones_to_a_quarter_of_a_pixel) {
-  constexpr int kPhotographs = 15;
-  constexpr double kDots = 100.0 * kPhotographs;
+  constexpr double kDots = 100.0 * test::kNumPhotographs;
   double on_grid = 0.0;
   double off_grid = 0.0;
   double squares = 0.0;
-  for (int i = 0; i < kPhotographs; ++i) {
-    const Photograph photo = load(i);
+  for (int i = 0; i < test::kNumPhotographs; ++i) {
+    const test::Photograph photo = test::load_photograph(i);
     ASSERT_FALSE(photo.gray.empty()) << "photograph " << i << " under " << test::data_dir();
 
-    const std::vector<Eigen::Vector2d> found = find(photo);
+    const std::vector<Eigen::Vector2d> found = centres_of(test::find_dots(photo));
 
     const test::DotGrid grid = test::GridGrower(found).largest();
     on_grid += static_cast<double>(grid.size());
