@@ -161,6 +161,10 @@ void print_table(const std::map<std::string, double>& least_ms) {
   for (const auto& [name, ms] : least_ms) {
     const std::string key = name.substr(0, name.find('|'));
     const std::string peer = name.substr(name.find('|') + 1);
+    if (peer == "dseam" && !least_ms.contains(key + "|pcl") &&
+        !least_ms.contains(key + "|nanoflann")) {
+      std::printf("| %s | %.3f | | | |\n", key.c_str(), ms);  // Its peer was left out by a filter.
+    }
     if (peer != "dseam") {
       const double own = least_ms.at(key + "|dseam");
       std::printf("| %s | %.3f | %s | %.2f | %.1f |\n", key.c_str(), own, peer.c_str(), ms,

@@ -122,15 +122,14 @@ FrameFuser::Report FrameFuser::run(const View& view, VoxelMap& map) noexcept {
                     step > 0.0 ? static_cast<std::int32_t>(std::min(step, kMostCounts)) : 0,
                     config_.pixel_stride,
                     static_cast<ViewMask>(1U << view.number)};
-  VoxelMap::Run open;
   for (std::uint32_t v = 0; v < k.height; v += config_.pixel_stride) {
-    fuse_row(frame, v, map, open, report);
+    fuse_row(frame, v, map, report);
   }
-  map.close(open, frame.seen_by, report.map);
+  map.flush(frame.seen_by, report.map);
   return report;
 }
 
-void FrameFuser::fuse_row(const Frame& frame, std::uint32_t v, VoxelMap& map, VoxelMap::Run& open,
+void FrameFuser::fuse_row(const Frame& frame, std::uint32_t v, VoxelMap& map,
                           Report& report) const noexcept {
   const depth::DepthImage& image = frame.view.image;
   const geometry::Transform3f& t = frame.T_base_camera;
@@ -155,7 +154,7 @@ void FrameFuser::fuse_row(const Frame& frame, std::uint32_t v, VoxelMap& map, Vo
     const FloatLanes pz = base(t.row_z, t.translation_mm.z);
     const std::uint32_t inside = lanes::bits(frame.box.contains(px, py, pz)) & usable;
     report.dropped_outside += count_of(usable & ~inside);
-    map.insert_eight(px, py, pz, inside, frame.seen_by, open, report.map);
+    map.insert_eight(px, py, pz, inside, frame.seen_by, report.map);
   }
 }
 

@@ -26,24 +26,17 @@ bool is_finite(geometry::Vec3f p) noexcept {
 
 bool is_sensible(float cell_mm) noexcept { return cell_mm >= 1.0e-3F && cell_mm <= 1.0e6F; }
 
-// One axis of eight points: which cell, and how far into it in steps of 2^-20 cells.
-struct AxisCells {
-  alignas(32) std::int32_t cell[kLanes];
-  alignas(32) std::int32_t step[kLanes];
-};
-
 [[gnu::always_inline]] inline FloatLanes lattice(const FloatLanes& coordinate, float origin_mm,
                                                  float cells_per_mm) noexcept {
   return (coordinate - splat(origin_mm)) * splat(cells_per_mm);
 }
 
 // What is out of range counts as 0 until it is dropped; no other value reaches an integer.
-[[gnu::always_inline]] inline void split(const FloatLanes& lattice, const IntLanes& in_range,
-                                         AxisCells& axis) noexcept {
+[[gnu::always_inline]] inline CellRuns::Axis split(const FloatLanes& lattice,
+                                                   const IntLanes& in_range) noexcept {
   const FloatLanes safe = lanes::keep(in_range, lattice);
   const IntLanes cell = lanes::floor_to_int(safe);
-  store(cell, axis.cell);
-  store(lanes::to_int((safe - lanes::to_float(cell)) * splat(kStepsPerCell)), axis.step);
+  return {cell, lanes::to_int((safe - lanes::to_float(cell)) * splat(kStepsPerCell))};
 }
 
 [[gnu::always_inline]] inline IntLanes in_range(const FloatLanes& lattice) noexcept {
@@ -73,12 +66,16 @@ VoxelMap::VoxelMap(const Config& config, const VoxelHash& hash, std::size_t max_
     : config_(config),
       cells_per_mm_(1.0F / config.cell_mm),
       hash_(hash),
+      runs_(arena.take<CellRuns>(1)),
       sums_(arena.take<Sum>(max_cells)),
       centroids_(max_cells, arena),
       count_(arena.take<std::uint32_t>(max_cells)),
       seen_by_(arena.take<ViewMask>(max_cells)) {}
 
-void VoxelMap::clear() noexcept { hash_.clear(); }
+void VoxelMap::clear() noexcept {
+  hash_.clear();
+  runs_[0].clear();
+}
 
 void VoxelMap::relay(float cell_mm, geometry::Vec3f origin_mm) noexcept {
   DSEAM_EXPECTS(is_sensible(cell_mm) && is_finite(origin_mm));
@@ -93,10 +90,9 @@ VoxelMap::Report VoxelMap::insert(const CloudView& cloud, std::size_t view) noex
   const auto seen_by = static_cast<ViewMask>(1U << view);
   const std::size_t whole = cloud.size() / kLanes * kLanes;
   Report report;
-  Run run;
   for (std::size_t i = 0; i < whole; i += kLanes) {
     insert_eight(lanes::load(&cloud.x[i]), lanes::load(&cloud.y[i]), lanes::load(&cloud.z[i]),
-                 0xFFU, seen_by, run, report);
+                 0xFFU, seen_by, report);
   }
   if (const std::size_t rest = cloud.size() - whole; rest > 0) {
     float x[kLanes] = {};
@@ -105,63 +101,58 @@ VoxelMap::Report VoxelMap::insert(const CloudView& cloud, std::size_t view) noex
     std::copy_n(&cloud.x[whole], rest, x);
     std::copy_n(&cloud.y[whole], rest, y);
     std::copy_n(&cloud.z[whole], rest, z);
-    insert_eight(lanes::load(x), lanes::load(y), lanes::load(z), (1U << rest) - 1U, seen_by, run,
+    insert_eight(lanes::load(x), lanes::load(y), lanes::load(z), (1U << rest) - 1U, seen_by,
                  report);
   }
-  close(run, seen_by, report);
+  flush(seen_by, report);
   return report;
 }
 
 void VoxelMap::insert_eight(const FloatLanes& x, const FloatLanes& y, const FloatLanes& z,
-                            std::uint32_t valid, ViewMask seen_by, Run& run,
-                            Report& report) noexcept {
+                            std::uint32_t valid, ViewMask seen_by, Report& report) noexcept {
   const FloatLanes lx = lattice(x, config_.origin_mm.x, cells_per_mm_);
   const FloatLanes ly = lattice(y, config_.origin_mm.y, cells_per_mm_);
   const FloatLanes lz = lattice(z, config_.origin_mm.z, cells_per_mm_);
   const IntLanes usable = in_range(lx) & in_range(ly) & in_range(lz);
-  AxisCells ax;
-  AxisCells ay;
-  AxisCells az;
-  split(lx, usable, ax);
-  split(ly, usable, ay);
-  split(lz, usable, az);
-  std::uint32_t left = valid & lanes::bits(usable);
+  const std::uint32_t left = valid & lanes::bits(usable);
   report.dropped_out_of_range += static_cast<std::uint32_t>(std::popcount(valid ^ left));
-  for (; left != 0; left &= left - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(left));
-    const CellKey key = CellKey::of(ax.cell[i], ay.cell[i], az.cell[i]);
-    if (key != run.key) {
-      close(run, seen_by, report);
-      run.key = key;
-    }
-    run.x += static_cast<std::uint64_t>(ax.step[i]);
-    run.y += static_cast<std::uint64_t>(ay.step[i]);
-    run.z += static_cast<std::uint64_t>(az.step[i]);
-    ++run.count;
+  if (!runs_[0].has_room()) {
+    flush(seen_by, report);
   }
+  runs_[0].append(split(lx, usable), split(ly, usable), split(lz, usable), left);
 }
 
-void VoxelMap::close(Run& run, ViewMask seen_by, Report& report) noexcept {
-  if (run.count == 0) {
+void VoxelMap::flush(ViewMask seen_by, Report& report) noexcept {
+  CellRuns& runs = runs_[0];
+  const std::size_t count = runs.cut();
+  for (std::size_t i = 0; i < count; ++i) {
+    runs.place[i] = hash_.place_of(runs.key(i));
+    hash_.fetch(runs.place[i]);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    add(i, seen_by, report);
+  }
+  runs.clear();
+}
+
+void VoxelMap::add(std::size_t run, ViewMask seen_by, Report& report) noexcept {
+  const CellRuns& runs = runs_[0];
+  const std::size_t known = hash_.size();
+  const std::uint32_t number = hash_.find_or_insert(runs.key(run), runs.place[run]);
+  if (number == VoxelHash::kFull) {
+    report.dropped_full += runs.count(run);
     return;
   }
-  const std::size_t known = hash_.size();
-  const std::uint32_t number = hash_.find_or_insert(run.key);
-  if (number == VoxelHash::kFull) {
-    report.dropped_full += run.count;
-  } else {
-    Sum& sum = sums_[number];
-    if (number == known) {
-      sum = Sum{};
-    }
-    sum.x += run.x;
-    sum.y += run.y;
-    sum.z += run.z;
-    sum.count += run.count;
-    sum.seen_by |= seen_by;
-    report.inserted += run.count;
+  Sum& sum = sums_[number];
+  if (number == known) {
+    sum = Sum{};
   }
-  run = Run{};
+  sum.x += runs.x(run);
+  sum.y += runs.y(run);
+  sum.z += runs.z(run);
+  sum.count += runs.count(run);
+  sum.seen_by |= seen_by;
+  report.inserted += runs.count(run);
 }
 
 FusedCloudView VoxelMap::view() noexcept {

@@ -64,8 +64,7 @@ class FrameFuser {
   struct Frame;
   FrameFuser(const Config& config, std::span<float> ray_x) noexcept
       : config_(config), ray_x_(ray_x) {}
-  void fuse_row(const Frame& frame, std::uint32_t v, VoxelMap& map, VoxelMap::Run& open,
-                Report& report) const noexcept;
+  void fuse_row(const Frame& frame, std::uint32_t v, VoxelMap& map, Report& report) const noexcept;
 
   Config config_;
   std::span<float> ray_x_;  ///< Tangent of each column's angle, of every stride-th column.

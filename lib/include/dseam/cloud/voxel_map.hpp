@@ -8,6 +8,7 @@
 #include "dseam/base/arena.hpp"
 #include "dseam/base/lanes.hpp"
 #include "dseam/base/result.hpp"
+#include "dseam/cloud/cell_runs.hpp"
 #include "dseam/cloud/cloud.hpp"
 #include "dseam/search/voxel_hash.hpp"
 
@@ -20,7 +21,7 @@ namespace dseam::cloud {
 /// and a million of them lose nothing.
 ///
 /// Frame:   whatever the points are in, usually base.
-/// Memory:  about 95 bytes a cell.
+/// Memory:  about 95 bytes a cell, and 20 kB.
 /// Time:    O(1) a point, whatever the coordinates; view() is O(cells).
 /// Context: real-time safe; one thread at a time.
 /// Source:  the paper's equations 8 (with k from z) and 9.
@@ -38,9 +39,9 @@ class VoxelMap {
   };
 
   [[nodiscard]] static constexpr std::size_t bytes(std::size_t max_cells) noexcept {
-    return search::VoxelHash::bytes(max_cells) + Arena::bytes<Sum>(max_cells) +
-           CloudBuffer::bytes(max_cells) + Arena::bytes<std::uint32_t>(max_cells) +
-           Arena::bytes<ViewMask>(max_cells);
+    return search::VoxelHash::bytes(max_cells) + Arena::bytes<CellRuns>(1) +
+           Arena::bytes<Sum>(max_cells) + CloudBuffer::bytes(max_cells) +
+           Arena::bytes<std::uint32_t>(max_cells) + Arena::bytes<ViewMask>(max_cells);
   }
   /// kInvalidArgument: a cell_mm that is not in [1e-3, 1e6], an origin that is not finite, no cell.
   [[nodiscard]] static Result<VoxelMap> make(const Config& config, std::size_t max_cells,
@@ -63,20 +64,12 @@ class VoxelMap {
   [[nodiscard]] std::size_t capacity() const noexcept { return hash_.capacity(); }
   [[nodiscard]] const Config& config() const noexcept { return config_; }
 
-  /// Points that fell into one cell one after the other, not yet added to it.
-  struct Run {
-    search::CellKey key;
-    std::uint64_t x = 0;
-    std::uint64_t y = 0;
-    std::uint64_t z = 0;
-    std::uint32_t count = 0;
-  };
-  /// For stages that make points eight at a time: adds those whose bit is set in `valid`, some of
-  /// them only to `run`, which close() then adds.
+  /// For stages that make points eight at a time: adds those whose bit is set in `valid`. They may
+  /// wait until flush(), which must come before another view and before the map is asked.
   void insert_eight(const lanes::FloatLanes& x, const lanes::FloatLanes& y,
-                    const lanes::FloatLanes& z, std::uint32_t valid, ViewMask seen_by, Run& run,
+                    const lanes::FloatLanes& z, std::uint32_t valid, ViewMask seen_by,
                     Report& report) noexcept;
-  void close(Run& run, ViewMask seen_by, Report& report) noexcept;
+  void flush(ViewMask seen_by, Report& report) noexcept;
 
  private:
   struct Sum {
@@ -89,10 +82,12 @@ class VoxelMap {
 
   VoxelMap(const Config& config, const search::VoxelHash& hash, std::size_t max_cells,
            Arena& arena) noexcept;
+  void add(std::size_t run, ViewMask seen_by, Report& report) noexcept;
 
   Config config_;
   float cells_per_mm_;
   search::VoxelHash hash_;
+  std::span<CellRuns> runs_;  ///< One.
   std::span<Sum> sums_;
   CloudBuffer centroids_;
   std::span<std::uint32_t> count_;

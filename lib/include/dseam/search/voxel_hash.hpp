@@ -60,8 +60,20 @@ class VoxelHash {
 
   void clear() noexcept;
   /// The cell's number; a new cell gets the number size(). kFull when there is no room for it.
-  [[nodiscard]] std::uint32_t find_or_insert(CellKey key) noexcept;
+  [[nodiscard]] std::uint32_t find_or_insert(CellKey key) noexcept {
+    return find_or_insert(key, place_of(key));
+  }
   [[nodiscard]] std::uint32_t find(CellKey key) const noexcept;
+
+  /// Where the search for a cell begins. Many cells are found sooner when first all places are
+  /// asked for and fetched: their memory comes while others are computed.
+  struct Place {
+    std::uint32_t slot;
+    std::uint32_t tag;
+  };
+  [[nodiscard]] Place place_of(CellKey key) const noexcept;
+  void fetch(Place place) const noexcept { __builtin_prefetch(&slots_[place.slot]); }
+  [[nodiscard]] std::uint32_t find_or_insert(CellKey key, Place place) noexcept;
 
   [[nodiscard]] std::span<const CellKey> keys() const noexcept { return keys_.first(size_); }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
@@ -71,10 +83,17 @@ class VoxelHash {
   static constexpr std::size_t kInLine = 8;
   // Half of the hash decides the slot, the other half is kept to spare most looks at the key.
   struct Slot {
-    std::uint32_t number_plus_one;  ///< 0: free.
+    std::uint32_t number;  ///< Above `cleared_`, counted from there; else the slot is free.
     std::uint32_t tag;
   };
 
+  [[nodiscard]] static constexpr std::uint64_t mixed(std::uint64_t key,
+                                                     std::uint64_t secret) noexcept {
+    key = (key ^ secret) * 0xD6E8FEB86659FD93ULL;
+    key ^= key >> 32U;
+    key = (key + secret) * 0xD6E8FEB86659FD93ULL;
+    return key ^ (key >> 32U);
+  }
   [[nodiscard]] static constexpr std::size_t slots_of(std::size_t max_cells) noexcept {
     return std::bit_ceil(2 * max_cells < kInLine ? kInLine : 2 * max_cells);
   }
@@ -82,11 +101,6 @@ class VoxelHash {
       : slots_(arena.take<Slot>(slots_of(max_cells))),
         keys_(arena.take<CellKey>(max_cells)),
         secret_(secret) {}
-  struct Place {
-    std::size_t slot;
-    std::uint32_t tag;
-  };
-  [[nodiscard]] Place place_of(CellKey key) const noexcept;
   /// The same place of the next line; once round all lines, the next place.
   [[nodiscard]] std::size_t next(std::size_t slot, std::uint32_t probe) const noexcept {
     const bool is_round = (probe + 1) % (slots_.size() / kInLine) == 0;
@@ -96,7 +110,21 @@ class VoxelHash {
   std::span<Slot> slots_;
   std::span<CellKey> keys_;
   std::uint64_t secret_;
-  std::size_t size_ = 0;
+  std::uint32_t cleared_ = 0;  ///< Numbers given before the last clear().
+  std::uint32_t size_ = 0;
 };
+
+// Two rounds of multiply and fold, each keyed: without the secret no set of colliding keys can be
+// written down beforehand. The block of eight decides the line. Which of it is a cell's own is
+// shifted about by the hash, so that cells which are all even, say, still use all slots; the next
+// try is the same one of the next line, so that a full line pushes no other aside.
+inline VoxelHash::Place VoxelHash::place_of(CellKey key) const noexcept {
+  constexpr std::uint64_t kLowest = CellKey{1U | 1ULL << 21U | 1ULL << 42U}.bits;
+  const std::uint64_t low = key.bits & kLowest;
+  const std::uint64_t hash = mixed(key.bits ^ low, secret_);
+  const std::uint64_t within = (low | low >> 20U | low >> 40U) % kInLine;
+  return {static_cast<std::uint32_t>((hash ^ within) & (slots_.size() - 1)),
+          static_cast<std::uint32_t>(hash >> 32U) ^ static_cast<std::uint32_t>(within)};
+}
 
 }  // namespace dseam::search

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "dseam/base/lane_packer.hpp"
+#include "dseam/base/lanes.hpp"
+#include "dseam/search/voxel_hash.hpp"
+
+namespace dseam::cloud {
+
+/// Points on their way into the cells of a lattice, cut into runs that fell into one cell one after
+/// the other: beside each other on a surface a scanner's points do.
+///
+/// Memory:  20 kB, lent.
+class CellRuns {
+ public:
+  static constexpr std::size_t kCapacity = 512;
+
+  /// One axis of eight points: which cell, and how far into it in steps of 2^-20 cells.
+  struct Axis {
+    lanes::IntLanes cell;
+    lanes::IntLanes step;
+  };
+
+  [[nodiscard]] bool has_room() const noexcept { return size_ + lanes::kLanes <= kCapacity; }
+  /// Those whose bit is set.
+  [[gnu::always_inline]] void append(const Axis& x, const Axis& y, const Axis& z,
+                                     std::uint32_t valid) noexcept {
+    const lanes::LanePacker packer(valid);
+    const std::size_t to = size_ + 1;
+    packer.store(x.cell, x_.cell + to);
+    packer.store(y.cell, y_.cell + to);
+    packer.store(z.cell, z_.cell + to);
+    packer.store(x.step, x_.steps + to);
+    packer.store(y.step, y_.steps + to);
+    packer.store(z.step, z_.steps + to);
+    size_ += static_cast<std::size_t>(std::popcount(valid));
+  }
+  /// Finds the runs of what was appended; returns how many.
+  [[nodiscard]] std::size_t cut() noexcept;
+  void clear() noexcept { size_ = 0; }
+
+  [[nodiscard]] search::CellKey key(std::size_t run) const noexcept {
+    const std::uint32_t at = begin_[run] + 1;
+    return search::CellKey::of(static_cast<std::int32_t>(x_.cell[at]),
+                               static_cast<std::int32_t>(y_.cell[at]),
+                               static_cast<std::int32_t>(z_.cell[at]));
+  }
+  [[nodiscard]] std::uint32_t count(std::size_t run) const noexcept {
+    return begin_[run + 1] - begin_[run];
+  }
+  /// Sums of the steps of its points.
+  [[nodiscard]] std::uint32_t x(std::size_t run) const noexcept { return sum(x_, run); }
+  [[nodiscard]] std::uint32_t y(std::size_t run) const noexcept { return sum(y_, run); }
+  [[nodiscard]] std::uint32_t z(std::size_t run) const noexcept { return sum(z_, run); }
+
+  /// Where each run's cell is looked for; for who looks.
+  search::VoxelHash::Place place[kCapacity];
+
+ private:
+  static constexpr std::size_t kRoom = 1 + kCapacity + lanes::kLanes;
+  // Place 0 lies before the first point. Sums may wrap: the difference of two of them does not,
+  // since 512 points have at most 2^29 steps.
+  struct Points {
+    std::uint32_t cell[kRoom];
+    std::uint32_t steps[kRoom];
+  };
+  [[nodiscard]] std::uint32_t sum(const Points& axis, std::size_t run) const noexcept {
+    return axis.steps[begin_[run + 1]] - axis.steps[begin_[run]];
+  }
+
+  Points x_, y_, z_;
+  std::uint32_t begin_[kRoom];
+  std::size_t size_ = 0;
+};
+
+}  // namespace dseam::cloud
