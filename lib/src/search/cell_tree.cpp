@@ -42,12 +42,7 @@ IndexedBox box_of_node(const Node& node) noexcept {
 }
 
 void set_child(Node& node, std::size_t lane, const IndexedBox& child) noexcept {
-  node.low_x[lane] = child.box.low_x;
-  node.low_y[lane] = child.box.low_y;
-  node.low_z[lane] = child.box.low_z;
-  node.high_x[lane] = child.box.high_x;
-  node.high_y[lane] = child.box.high_y;
-  node.high_z[lane] = child.box.high_z;
+  node.set(lane, child.box);
   node.first_index[lane] = child.first_index;
 }
 

@@ -8,6 +8,8 @@
 
 #include "dseam/base/expects.hpp"
 #include "dseam/search/grid_index.hpp"
+#include "least_distances.hpp"
+#include "least_neighbours.hpp"
 #include "nearest_of_all.hpp"
 
 namespace dseam::search {
@@ -22,7 +24,7 @@ template <std::size_t kRoom>
 FloatLanes mean_of(const LeastDistances<kRoom>& distances, std::size_t k) noexcept {
   FloatLanes sum = splat(0.0F);
   for (std::size_t j = 0; j < k; ++j) {
-    sum = sum + sqrt(distances.least[j]);
+    sum = sum + sqrt(distances.squared_mm2(j));
   }
   return sum / splat(static_cast<float>(k));
 }
@@ -31,8 +33,8 @@ FloatLanes mean_of(const LeastDistances<kRoom>& distances, std::size_t k) noexce
 template <std::size_t kRoom>
 [[gnu::noinline]] void mean_distances_of_all(const CellTree& tree, const NearPoints& near,
                                              std::size_t k, std::span<float> mean_mm) noexcept {
-  NearestOfAll<kRoom> search(tree, near, k);
-  search.run([&](std::uint32_t at, const LeastDistances<kRoom>& distances, bool) noexcept {
+  NearestOfAll<LeastDistances<kRoom>> search(tree, near, k);
+  search.run([&](std::uint32_t at, const LeastDistances<kRoom>& distances) noexcept {
     const FloatLanes mean = mean_of(distances, k);
     const Cell& cell = tree.cells()[at];
     for (std::size_t i = 0; i < kLanes && cell.index[i] != kNoPoint; ++i) {
@@ -41,81 +43,35 @@ template <std::size_t kRoom>
   });
 }
 
-// The rows of one cell. `farthest` is known from the distances alone; now the indices are wanted.
-class Rows {
- public:
-  Rows(const Cell& cell, std::size_t k, const FloatLanes& farthest,
-       std::span<Neighbour> found) noexcept
-      : cell_(cell), query_(cell), farthest_(farthest) {
-    for (; count_ < kLanes && cell.index[count_] != kNoPoint; ++count_) {
-      const std::span<Neighbour> row = found.subspan(cell.index[count_] * k, k);
-      std::fill(row.begin(), row.end(), Neighbour{kNoPoint, kInfinity});
-      lists_[count_] = NearestList(row, farthest[count_]);
-    }
-  }
-
-  void offer(const Cell& other, const Box& box) noexcept {
-    std::uint32_t rows = query_.bits_within(box, farthest_) & ((1U << count_) - 1U);
-    for (; rows != 0; rows &= rows - 1) {
-      offer(static_cast<std::size_t>(std::countr_zero(rows)), EightPoints::of(other));
-    }
-  }
-  void offer(const NearView& points) noexcept {
-    for (std::size_t row = 0; row < count_; ++row) {
-      for (std::size_t i = 0; i < points.count; i += kLanes) {
-        offer(row, EightPoints::of(points, i));
-      }
-    }
-  }
-  [[nodiscard]] Reach reach() const noexcept {
-    Reach reach{0.0F, 0};
-    for (std::size_t i = 0; i < count_; ++i) {
-      reach.squared_mm2 = std::max(reach.squared_mm2, lists_[i].limit().squared_mm2);
-      reach.index = std::max(reach.index, lists_[i].limit().index);
-    }
-    return reach;
-  }
-
- private:
-  void offer(std::size_t row, const EightPoints& points) noexcept {
-    const FloatLanes dx = points.x - splat(cell_.x[row]);
-    const FloatLanes dy = points.y - splat(cell_.y[row]);
-    const FloatLanes dz = points.z - splat(cell_.z[row]);
-    const FloatLanes squared = dx * dx + dy * dy + dz * dz;
-    NearestList& list = lists_[row];
-    std::uint32_t near = bits(squared <= splat(list.limit().squared_mm2));
-    for (; near != 0; near &= near - 1) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(near));
-      const auto index = static_cast<std::uint32_t>(points.index[lane]);
-      if (index != cell_.index[row]) {
-        list.offer({index, squared[lane]});
-      }
-    }
-  }
-
-  const Cell& cell_;
-  QueryCell query_;
-  FloatLanes farthest_;
-  std::array<NearestList, kLanes> lists_;
-  std::size_t count_ = 0;
-};
-
 template <std::size_t kRoom>
 [[gnu::noinline]] void rows_of_all(const CellTree& tree, const NearPoints& near, std::size_t k,
                                    std::size_t num_others, std::span<Neighbour> found) noexcept {
-  NearestOfAll<kRoom> search(tree, near, std::min(k, num_others));
-  search.run([&](std::uint32_t at, const LeastDistances<kRoom>& distances, bool covered) noexcept {
-    const FloatLanes& farthest = distances.least[k - 1];
-    Rows rows(tree.cells()[at], k, farthest, found);
-    if (covered) {
-      rows.offer(search.near().all_of(at, tree.box_of(at), largest(farthest)));
-      return;
+  NearestOfAll<LeastNeighbours<kRoom>> search(tree, near, std::min(k, num_others));
+  search.run([&](std::uint32_t at, const LeastNeighbours<kRoom>& nearest) noexcept {
+    const Cell& cell = tree.cells()[at];
+    for (std::size_t i = 0; i < kLanes && cell.index[i] != kNoPoint; ++i) {
+      Neighbour* row = &found[cell.index[i] * k];
+      for (std::size_t j = 0; j < k; ++j) {
+        row[j] = nearest(i, j);
+      }
     }
-    const auto reach = [&]() noexcept { return rows.reach(); };
-    tree.visit_around(at, tree.box_of(at), reach, [&](std::uint32_t other) noexcept {
-      rows.offer(tree.cells()[other], tree.box_of(other));
-    });
   });
+}
+
+// One at a time, for lists so long that those of eight points would not fit on the stack.
+void long_rows_of_all(const CellTree& tree, std::size_t k, std::span<Neighbour> found) noexcept {
+  for (const Cell& cell : tree.cells()) {
+    for (std::size_t i = 0; i < kLanes && cell.index[i] != kNoPoint; ++i) {
+      std::array<Neighbour, GridIndex::kMaxBatchNeighbours + 1> room;
+      room.fill(Neighbour{kNoPoint, kInfinity});
+      NearestList list({room.data(), k + 1}, kInfinity);
+      offer_all(tree, {cell.x[i], cell.y[i], cell.z[i]}, list);
+      const auto self = std::find_if(room.begin(), room.begin() + static_cast<std::ptrdiff_t>(k),
+                                     [&](const Neighbour& n) { return n.index == cell.index[i]; });
+      std::copy(self + 1, room.begin() + static_cast<std::ptrdiff_t>(k) + 1, self);
+      std::copy_n(room.begin(), k, &found[cell.index[i] * k]);
+    }
+  }
 }
 
 }  // namespace
@@ -148,7 +104,7 @@ void GridIndex::k_nearest_of_all(std::size_t k, std::span<Neighbour> found) cons
   } else if (k <= 24) {
     rows_of_all<24>(tree_, near_points(), k, num_others, found);
   } else {
-    rows_of_all<kMaxBatchNeighbours>(tree_, near_points(), k, num_others, found);
+    long_rows_of_all(tree_, k, found);
   }
 }
 

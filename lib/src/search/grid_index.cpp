@@ -64,8 +64,7 @@ GridIndex::GridIndex(std::size_t max_points, Arena& arena) noexcept
       places_(arena.take<CurvePlace>(max_points)),
       spare_(arena.take<CurvePlace>(max_points)),
       counters_(arena.take<std::uint32_t>(kCurveCounters)),
-      near_floats_(arena.take<float>(NearPoints::kFloats)),
-      near_indices_(arena.take<std::uint32_t>(NearPoints::kIndices)) {}
+      near_memory_(arena.take<NearPoints::Memory>(1)) {}
 
 GridIndex::Report GridIndex::rebuild(const cloud::CloudView& cloud) noexcept {
   const Report report = collect(cloud);

@@ -2,13 +2,48 @@
 #include "dseam/search/near_points.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <utility>
 
 namespace dseam::search {
 namespace {
 
-constexpr std::uint32_t kAll = 0xFFU;
 constexpr float kNever = -1.0F;  // Nothing is nearer than that.
+
+// Bit j of byte i becomes bit i of byte j.
+constexpr std::uint64_t transposed(std::uint64_t bits) noexcept {
+  const auto swap = [&](std::uint32_t distance, std::uint64_t mask) noexcept {
+    const std::uint64_t differ = (bits ^ (bits >> distance)) & mask;
+    bits ^= differ ^ (differ << distance);
+  };
+  swap(7, 0x00AA00AA00AA00AAULL);
+  swap(14, 0x0000CCCC0000CCCCULL);
+  swap(28, 0x00000000F0F0F0F0ULL);
+  return bits;
+}
+
+// For each cell found a byte with one bit for each of the eight; wanted is the other way round.
+class Masks {
+ public:
+  void set(std::size_t cell, std::uint32_t mask) noexcept {
+    eights_[cell / 8] |= std::uint64_t{mask} << (cell % 8 * 8);
+  }
+  void turn(std::size_t count, NearPoints::CellSet* sets) const noexcept {
+    for (std::size_t own = 0; own < kLanes; ++own) {
+      sets[own] = NearPoints::CellSet{};
+    }
+    for (std::size_t i = 0; i * 8 < count; ++i) {
+      const std::uint64_t turned = transposed(eights_[i]);
+      for (std::size_t own = 0; own < kLanes; ++own) {
+        sets[own].words[i / 8] |= (turned >> (own * 8) & 0xFFU) << (i % 8 * 8);
+      }
+    }
+  }
+
+ private:
+  std::array<std::uint64_t, NearPoints::kMostCells / 8> eights_{};
+};
 
 }  // namespace
 
@@ -21,67 +56,79 @@ NearView PointList::view() noexcept {
   return {x_, y_, z_, index_, count_};
 }
 
-bool NearPoints::collect(std::uint32_t block, const Box& box, float squared_mm2) noexcept {
-  of_block_.clear();
+bool NearPoints::collect(std::uint32_t block, const Node& boxes, const Box& around,
+                         Reaches reaches) noexcept {
+  const FloatLanes near = lanes::splat(reaches.near_mm2);
+  const FloatLanes far = lanes::splat(reaches.far_mm2);
+  Masks are_near;
+  Masks are_far;
+  std::size_t count = 0;
+  const auto add = [&](std::uint32_t cell) noexcept {
+    const FloatLanes gaps = squared_gaps(boxes, tree_.box_of(cell));
+    are_near.set(count, bits(gaps <= near));
+    are_far.set(count, bits(gaps <= far));
+    memory_.cells[count++] = cell;
+  };
   for (std::uint32_t cell = tree_.first_of(block); cell < tree_.end_of(block); ++cell) {
-    of_block_.append(EightPoints::of(tree_.cells()[cell]), kAll);
+    add(cell);
   }
-  const BoxGaps gaps(box);
-  const FloatLanes limit = lanes::splat(squared_mm2);
-  Reach reach{squared_mm2};
-  bool fits = true;
+  Reach reach{reaches.far_mm2};
   const auto reach_of = [&]() noexcept { return reach; };
-  tree_.visit_beyond(block, box, reach_of, [&](std::uint32_t cell) noexcept {
-    if (!of_block_.has_room()) {
-      fits = false;
+  tree_.visit_beyond(block, around, reach_of, [&](std::uint32_t cell) noexcept {
+    if (count < kMostCells) {
+      add(cell);
+    } else {
       reach.squared_mm2 = kNever;
-      return;
     }
-    const EightPoints points = EightPoints::of(tree_.cells()[cell]);
-    of_block_.append(points, bits(gaps.squared_mm2(points) <= limit));
   });
-  return fits;
+  are_near.turn(count, memory_.near);
+  are_far.turn(count, memory_.far);
+  near_mm2_ = reaches.near_mm2;
+  return reach.squared_mm2 != kNever;
 }
 
-void NearPoints::narrow(const BoxGaps& gaps, Ring ring, std::size_t from, std::size_t to) noexcept {
-  const NearView points = of_block_.view();
+template <bool kIndices>
+void NearPoints::take(const CellSet& set, std::uint64_t but, const BoxGaps& gaps,
+                      Ring ring) noexcept {
   const FloatLanes above = lanes::splat(ring.above_mm2);
   const FloatLanes upto = lanes::splat(ring.upto_mm2);
+  const std::uint32_t* cells = memory_.cells;
   PointList list = of_cell_;
-  for (std::size_t i = from; i < std::min(to, points.count); i += kLanes) {
-    const EightPoints eight = EightPoints::of(points, i);
-    const FloatLanes squared = gaps.squared_mm2(eight);
-    list.append(eight, bits((above < squared) & (squared <= upto)));
+  for (const std::uint64_t word : set.words) {
+    for (std::uint64_t left = word & ~std::exchange(but, 0); left != 0; left &= left - 1) {
+      const EightPoints eight = EightPoints::of(tree_.cells()[cells[std::countr_zero(left)]]);
+      const FloatLanes squared = gaps.squared_mm2(eight);
+      const std::uint32_t wanted = bits((above < squared) & (squared <= upto));
+      if constexpr (kIndices) {
+        list.append(eight, wanted);
+      } else {
+        list.append_places(eight, wanted);
+      }
+    }
+    cells += 64;
   }
   of_cell_ = list;
 }
 
+template <bool kIndices>
 NearView NearPoints::others_of(std::uint32_t at, const Box& box, Ring ring) noexcept {
-  const std::size_t own = at % kLanes * kLanes;
-  const BoxGaps gaps(box);
-  const NearView points = of_block_.view();
-  const FloatLanes above = lanes::splat(ring.above_mm2);
-  const FloatLanes upto = lanes::splat(ring.upto_mm2);
-  PointList list = of_cell_;
-  list.clear();
-  for (std::size_t i = own == 0 ? kLanes : 0; i < points.count;) {
-    const EightPoints eight = EightPoints::of(points, i);
-    const FloatLanes squared = gaps.squared_mm2(eight);
-    list.append_places(eight, bits((above < squared) & (squared <= upto)));
-    i += i + kLanes == own ? 2 * kLanes : kLanes;
-  }
-  of_cell_ = list;
+  const std::size_t own = at % kLanes;
+  const CellSet& set = ring.upto_mm2 <= near_mm2_ ? memory_.near[own] : memory_.far[own];
+  of_cell_.clear();
+  take<kIndices>(set, std::uint64_t{1} << own, BoxGaps(box), ring);
   return of_cell_.view();
 }
 
+template NearView NearPoints::others_of<false>(std::uint32_t, const Box&, Ring) noexcept;
+template NearView NearPoints::others_of<true>(std::uint32_t, const Box&, Ring) noexcept;
+
 NearView NearPoints::all_of(std::uint32_t at, const Box& box, float squared_mm2) noexcept {
-  const std::size_t own = at % kLanes * kLanes;
+  const std::size_t own = at % kLanes;
   const BoxGaps gaps(box);
   const Ring ring{kNever, squared_mm2};
   of_cell_.clear();
-  narrow(gaps, ring, own, own + kLanes);
-  narrow(gaps, ring, 0, own);
-  narrow(gaps, ring, own + kLanes, kCapacity);
+  take<true>(CellSet{{std::uint64_t{1} << own}}, 0, gaps, ring);
+  take<true>(memory_.far[own], std::uint64_t{1} << own, gaps, ring);
   return of_cell_.view();
 }
 

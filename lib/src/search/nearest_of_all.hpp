@@ -11,40 +11,44 @@
 
 namespace dseam::search {
 
-/// The distances to the k nearest of every point, cell by cell.
+/// The k nearest of every point, cell by cell; `Best` is what is wanted of them: LeastDistances or
+/// LeastNeighbours.
 ///
 /// How far to look for a block is a guess, learnt from the blocks before. What it covers is looked
 /// at in straight loops; where it falls short, the ring beyond is looked at too, then the tree. The
 /// guess decides how long that takes, never what is found.
-template <std::size_t kRoom>
+template <typename Best>
 class NearestOfAll {
  public:
   NearestOfAll(const CellTree& tree, NearPoints near, std::size_t k) noexcept
       : tree_(tree), near_(near), k_(k) {}
 
-  /// `done(cell, distances, covered)`: with `covered` all that is as near lies in near().
+  /// `done(cell, best)`.
   template <typename Done>
   void run(const Done& done) noexcept {
+    Best best;
     for (std::uint32_t block = 0; block < tree_.num_blocks(); ++block) {
+      const Box around = tree_.box_of_block(block);
+      if (is_one_place(around)) {
+        look_from(block, best, done);
+        continue;
+      }
       const bool fits = collect(block);
       crowded_ = false;
       for (std::uint32_t at = CellTree::first_of(block); at < tree_.end_of(block); ++at) {
         const Cell& cell = tree_.cells()[at];
         const QueryCell query(cell);
-        LeastDistances<kRoom> best;
+        best.clear();
         best.insert_own(query, cell);
         if (fits) {
           look_around(at, query, best);
         } else {
           look_farther(at, query, best);
         }
-        const bool covered =
-            fits && groups_[at % kLanes].lanes == kAll && largest(best.least[k_ - 1]) <= reach_mm2_;
-        done(at, best, covered);
+        done(at, best);
       }
     }
   }
-  [[nodiscard]] NearPoints& near() noexcept { return near_; }
 
  private:
   static constexpr float kGrow = 1.2F;  ///< These two make one guess in ten fall short.
@@ -55,7 +59,7 @@ class NearestOfAll {
   static constexpr float kStray = 16.0F;
   static constexpr float kFarTooMuch = 16.0F;
   static constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  static constexpr std::size_t kCompany = 4;
+  static constexpr std::size_t kCompany = 5;
   static constexpr float kLeastGuess = 1.0e-12F;
   static constexpr float kMostGuess = 1.0e15F;
   static constexpr std::uint32_t kAll = 0xFFU;
@@ -67,13 +71,17 @@ class NearestOfAll {
   };
 
   [[nodiscard]] bool collect(std::uint32_t block) noexcept {
-    Box box = kNothing;
-    for (std::uint32_t at = CellTree::first_of(block); at < tree_.end_of(block); ++at) {
-      groups_[at % kLanes] = group_of(at);
-      box = both(box, groups_[at % kLanes].box);
+    Box around = kNothing;
+    Node boxes;
+    for (std::uint32_t i = 0; i < kLanes; ++i) {
+      const std::uint32_t at = CellTree::first_of(block) + i;
+      groups_[i] = at < tree_.end_of(block) ? group_of(at) : Group{kNothing, 0};
+      boxes.set(i, groups_[i].box);
+      around = both(around, groups_[i].box);
     }
+    near_mm2_ = guess_mm2_;
     reach_mm2_ = kWiden * guess_mm2_;
-    return near_.collect(block, box, reach_mm2_);
+    return near_.collect(block, boxes, around, {near_mm2_, reach_mm2_});
   }
 
   [[nodiscard]] Group group_of(std::uint32_t at) const noexcept {
@@ -88,7 +96,7 @@ class NearestOfAll {
     const Cell& cell = tree_.cells()[at];
     LeastDistances<kCompany> own;
     own.insert_own(QueryCell(cell), cell);
-    const FloatLanes& company = own.least[std::min(k_, kCompany) - 1];
+    const FloatLanes& company = own.squared_mm2(std::min(k_, kCompany) - 1);
     Group group{kNothing, bits(company <= lanes::splat(kStray * guess_mm2_))};
     for (std::size_t i = 0; i < kLanes && cell.index[i] != kNoPoint; ++i) {
       if ((group.lanes >> i & 1U) != 0) {
@@ -99,21 +107,23 @@ class NearestOfAll {
   }
 
   // Among the points collected for the block.
-  void look_around(std::uint32_t at, const QueryCell& query, LeastDistances<kRoom>& best) noexcept {
+  void look_around(std::uint32_t at, const QueryCell& query, Best& best) noexcept {
     const Group& group = groups_[at % kLanes];
-    float seen_mm2 = std::min(guess_mm2_, reach_mm2_);
-    best.insert_all(query, near_.others_of(at, group.box, {-1.0F, seen_mm2}));
+    float seen_mm2 = near_mm2_;
+    look_in_ring(at, query, {-1.0F, seen_mm2}, best);
     const float wanted_mm2 = farthest_of(group.lanes, best);
     if (wanted_mm2 > seen_mm2) {
-      const Ring ring{seen_mm2, std::min(wanted_mm2, reach_mm2_)};
-      best.insert_all(query, near_.others_of(at, group.box, ring));
-      seen_mm2 = ring.upto_mm2;
+      look_in_ring(at, query, {seen_mm2, reach_mm2_}, best);
+      seen_mm2 = reach_mm2_;
     }
     finish(at, seen_mm2, best);
   }
+  void look_in_ring(std::uint32_t at, const QueryCell& query, Ring ring, Best& best) noexcept {
+    const Box& box = groups_[at % kLanes].box;
+    best.insert_all(query, near_.template others_of<Best::kIndices>(at, box, ring));
+  }
   // The block had too many; a cell alone may not.
-  void look_farther(std::uint32_t at, const QueryCell& query,
-                    LeastDistances<kRoom>& best) noexcept {
+  void look_farther(std::uint32_t at, const QueryCell& query, Best& best) noexcept {
     const Group& group = groups_[at % kLanes];
     if (!crowded_ && group.lanes != 0) {
       const NearView points = near_.others_around(at, group.box, reach_mm2_);
@@ -126,18 +136,19 @@ class NearestOfAll {
     finish(at, crowded_ ? kInfinity : reach_mm2_, best);
   }
   // `best` knows of all within `seen_mm2` of the cell's group.
-  void finish(std::uint32_t at, float seen_mm2, LeastDistances<kRoom>& best) noexcept {
+  void finish(std::uint32_t at, float seen_mm2, Best& best) noexcept {
     const std::uint32_t group = groups_[at % kLanes].lanes;
-    const std::uint32_t beyond = bits(lanes::splat(seen_mm2) < best.least[k_ - 1]) | ~group;
-    if (seen_mm2 < kInfinity && (beyond & kAll) != 0) {
-      look_alone(at, beyond & kAll, best);
+    const std::uint32_t beyond =
+        bits(lanes::splat(seen_mm2) < best.squared_mm2(k_ - 1)) | (kAll & ~group);
+    if (seen_mm2 < kInfinity && beyond != 0) {
+      look_alone(at, beyond, best);
     }
     learn(group, best);
   }
   // Upwards in small steps, since a few strays say little; down at once where all eight say so.
-  void learn(std::uint32_t group, const LeastDistances<kRoom>& best) noexcept {
-    const float nearest_mm2 = least(best.least[k_ - 1]);
-    const float farthest_mm2 = largest(best.least[k_ - 1]);
+  void learn(std::uint32_t group, const Best& best) noexcept {
+    const float nearest_mm2 = least(best.squared_mm2(k_ - 1));
+    const float farthest_mm2 = largest(best.squared_mm2(k_ - 1));
     if (nearest_mm2 > guess_mm2_) {
       guess_mm2_ *= kGrow;
     } else if (farthest_mm2 * kFarTooMuch < guess_mm2_) {
@@ -147,9 +158,8 @@ class NearestOfAll {
     }
     guess_mm2_ = std::clamp(guess_mm2_, kLeastGuess, kMostGuess);
   }
-  [[nodiscard]] float farthest_of(std::uint32_t group,
-                                  const LeastDistances<kRoom>& best) const noexcept {
-    const FloatLanes& farthest = best.least[k_ - 1];
+  [[nodiscard]] float farthest_of(std::uint32_t group, const Best& best) const noexcept {
+    const FloatLanes farthest = best.squared_mm2(k_ - 1);
     if (group == kAll) {
       return largest(farthest);
     }
@@ -160,51 +170,60 @@ class NearestOfAll {
     return most;
   }
 
-  // One point at a time; it finds itself too.
-  void look_alone(std::uint32_t at, std::uint32_t alone, LeastDistances<kRoom>& best) noexcept {
+  // One point at a time, no farther than the k-th that it knows of.
+  void look_alone(std::uint32_t at, std::uint32_t alone, Best& best) noexcept {
     const Cell& cell = tree_.cells()[at];
+    const FloatLanes known = best.squared_mm2(k_ - 1);
     for (; alone != 0; alone &= alone - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(alone));
-      if (cell.index[i] == kNoPoint) {
-        continue;
-      }
-      std::array<Neighbour, kRoom + 1> found;
-      look_alone(at, i, {found.data(), k_ + 1});
-      for (std::size_t j = 0; j < k_; ++j) {
-        const FloatLanes its = lanes::splat(found[j + 1].squared_mm2);
-        best.least[j] = select(lanes::is_lane(i), its, best.least[j]);
+      if (cell.index[i] != kNoPoint) {
+        std::array<Neighbour, Best::kMost + 1> room;
+        NearestList list({room.data(), k_ + 1}, known[i]);
+        offer_all(tree_, {cell.x[i], cell.y[i], cell.z[i]}, list);
+        take_others(room, cell.index[i], i, best);
       }
     }
   }
-  // Most lie as close to others as all do, only not to those of their cell.
-  void look_alone(std::uint32_t at, std::size_t lane, std::span<Neighbour> found) noexcept {
-    const Cell& cell = tree_.cells()[at];
-    const geometry::Vec3f point{cell.x[lane], cell.y[lane], cell.z[lane]};
-    NearestList near(found, reach_mm2_);
-    near.offer(EightPoints::of(cell), point);
-    const NearView others = near_.others_around(at, box_at(point), reach_mm2_);
-    for (std::size_t i = 0; i < others.count; i += kLanes) {
-      near.offer(EightPoints::of(others, i), point);
+  // Of the k + 1 nearest in a place those that are not the point itself; among many in one place it
+  // may not be there.
+  void take_others(std::span<const Neighbour> found, std::uint32_t self, std::size_t lane,
+                   Best& best) const noexcept {
+    std::size_t place = 0;
+    for (std::size_t i = 0; i <= k_ && place < k_; ++i) {
+      if (found[i].index != self) {
+        best.set(lane, place++, found[i]);
+      }
     }
-    if (others.count == 0 || near.size() < found.size()) {
-      NearestList all(found, kInfinity);
-      offer_all(tree_, point, all);
+  }
+  // All points of the block lie in one place: what is nearest to one of them is so to all.
+  template <typename Done>
+  void look_from(std::uint32_t block, Best& best, const Done& done) noexcept {
+    const Cell& first = tree_.cells()[CellTree::first_of(block)];
+    std::array<Neighbour, Best::kMost + 1> room;
+    room.fill(Neighbour{kNoPoint, kInfinity});
+    best.clear();
+    NearestList list({room.data(), k_ + 1}, kInfinity);
+    offer_all(tree_, {first.x[0], first.y[0], first.z[0]}, list);
+    for (std::uint32_t at = CellTree::first_of(block); at < tree_.end_of(block); ++at) {
+      const Cell& cell = tree_.cells()[at];
+      for (std::size_t i = 0; i < kLanes && cell.index[i] != kNoPoint; ++i) {
+        take_others(room, cell.index[i], i, best);
+      }
+      done(at, best);
     }
+  }
+  [[nodiscard]] static bool is_one_place(const Box& box) noexcept {
+    return box.low_x == box.high_x && box.low_y == box.high_y && box.low_z == box.high_z;
   }
 
   // All eight at once; `best` knows its own cell.
-  void look_through_tree(std::uint32_t at, const QueryCell& query,
-                         LeastDistances<kRoom>& best) noexcept {
-    const Cell& own = tree_.cells()[at];
-    FloatLanes farthest = best.least[k_ - 1];
-    Reach of_all{largest(farthest), 0};
-    const auto reach = [&]() noexcept { return of_all; };
-    tree_.visit_around(at, tree_.box_of(at), reach, [&](std::uint32_t other) noexcept {
-      const Cell& cell = tree_.cells()[other];
-      if (&cell != &own && query.any_nearer(tree_.box_of(other), farthest)) {
-        best.insert_cell(query, cell);
-        farthest = best.least[k_ - 1];
-        of_all.squared_mm2 = largest(farthest);
+  void look_through_tree(std::uint32_t at, const QueryCell& query, Best& best) noexcept {
+    Reach reach = best.reach(k_);
+    const auto reach_of = [&]() noexcept { return reach; };
+    tree_.visit_around(at, tree_.box_of(at), reach_of, [&](std::uint32_t other) noexcept {
+      if (other != at && best.may_take(query, tree_.box_of(other), k_)) {
+        best.insert_cell(query, tree_.cells()[other]);
+        reach = best.reach(k_);
       }
     });
   }
@@ -216,6 +235,7 @@ class NearestOfAll {
   NearPoints near_;
   std::size_t k_;
   float guess_mm2_ = 1.0F;
+  float near_mm2_ = 0.0F;  ///< Of the block: the guess, and what it is widened to.
   float reach_mm2_ = 0.0F;
   bool crowded_ = false;  ///< Even around one cell of the block there are too many.
   std::array<Group, kLanes> groups_;

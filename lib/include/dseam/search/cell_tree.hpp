@@ -27,6 +27,12 @@ struct alignas(32) Cell {
   std::uint32_t index[kLanes];
 };
 
+/// An axis-aligned box; a point is one of no size.
+struct Box {
+  float low_x, low_y, low_z;
+  float high_x, high_y, high_z;
+};
+
 /// The boxes of eight cells, or of eight nodes of the level below; unused ones are inside out.
 struct alignas(32) Node {
   float low_x[kLanes];
@@ -36,12 +42,15 @@ struct alignas(32) Node {
   float high_y[kLanes];
   float high_z[kLanes];
   std::uint32_t first_index[kLanes];  ///< The least index in the box: ties go to it.
-};
 
-/// An axis-aligned box; a point is one of no size.
-struct Box {
-  float low_x, low_y, low_z;
-  float high_x, high_y, high_z;
+  void set(std::size_t lane, const Box& box) noexcept {
+    low_x[lane] = box.low_x;
+    low_y[lane] = box.low_y;
+    low_z[lane] = box.low_z;
+    high_x[lane] = box.high_x;
+    high_y[lane] = box.high_y;
+    high_z[lane] = box.high_z;
+  }
 };
 
 /// The least box around two.
@@ -114,6 +123,10 @@ class CellTree {
   }
   [[nodiscard]] std::uint32_t end_of(std::uint32_t block) const noexcept {
     return std::min(first_of(block + 1), static_cast<std::uint32_t>(num_cells_));
+  }
+  /// The boxes of its cells.
+  [[nodiscard]] const Node& node_of(std::uint32_t block) const noexcept {
+    return node_storage_[block];
   }
   [[nodiscard]] Box box_of_block(std::uint32_t block) const noexcept;
 

@@ -30,7 +30,7 @@ struct Neighbour {
 /// are ordered by index, so the answer is unique. What is not finite, or further than kMaxMm from
 /// the origin on an axis, is left out and counted.
 ///
-/// Memory:  about 40 bytes a point and 17 kB; the indexed points are copied.
+/// Memory:  about 40 bytes a point and 18 kB; the indexed points are copied.
 /// Time:    rebuild() is linear but for 10 more bits of grid where points crowd, at most 20 times;
 ///          queries visit only boxes that may hold an answer, whatever the points' distribution.
 /// Context: real-time safe; after rebuild() any number of threads may query single points, and one
@@ -51,8 +51,7 @@ class GridIndex {
     const std::size_t cells = CellTree::cells_of(max_points);
     return Arena::bytes<Cell>(cells) + Arena::bytes<Node>(CellTree::nodes_of(cells)) +
            2 * Arena::bytes<CurvePlace>(max_points) + Arena::bytes<std::uint32_t>(kCurveCounters) +
-           Arena::bytes<float>(NearPoints::kFloats) +
-           Arena::bytes<std::uint32_t>(NearPoints::kIndices);
+           Arena::bytes<NearPoints::Memory>(1);
   }
   /// kInvalidArgument: no point, or more than 32 bits count. kOutOfMemory: the arena is too small.
   [[nodiscard]] static Result<GridIndex> make(std::size_t max_points, Arena& arena) noexcept;
@@ -99,9 +98,7 @@ class GridIndex {
   GridIndex(std::size_t max_points, Arena& arena) noexcept;
   Report collect(const cloud::CloudView& cloud) noexcept;
   void fill_cells(const cloud::CloudView& cloud) noexcept;
-  [[nodiscard]] NearPoints near_points() const noexcept {
-    return {tree_, near_floats_, near_indices_};
-  }
+  [[nodiscard]] NearPoints near_points() const noexcept { return {tree_, near_memory_[0]}; }
   /// Those within reach of point `lane` of a cell, without itself; returns how many there are.
   [[nodiscard]] std::size_t others_in(const NearView& near, std::uint32_t at, std::size_t lane,
                                       float squared_mm2, std::span<Neighbour> found) const noexcept;
@@ -112,8 +109,7 @@ class GridIndex {
   std::span<CurvePlace> places_;
   std::span<CurvePlace> spare_;
   std::span<std::uint32_t> counters_;
-  std::span<float> near_floats_;
-  std::span<std::uint32_t> near_indices_;
+  std::span<NearPoints::Memory> near_memory_;  ///< One.
   std::size_t size_ = 0;
 };
 
@@ -122,7 +118,8 @@ void GridIndex::for_each_cell(float radius_mm, Work& work) const noexcept {
   const float squared_mm2 = radius_mm * radius_mm;
   NearPoints near = near_points();
   for (std::uint32_t block = 0; block < tree_.num_blocks(); ++block) {
-    const bool fits = near.collect(block, tree_.box_of_block(block), squared_mm2);
+    const bool fits = near.collect(block, tree_.node_of(block), tree_.box_of_block(block),
+                                   {squared_mm2, squared_mm2});
     for (std::uint32_t at = CellTree::first_of(block); at < tree_.end_of(block); ++at) {
       const QueryCell query(tree_.cells()[at]);
       const auto add = [&](const NearView& points) noexcept { work.add(query, points); };
@@ -144,7 +141,8 @@ std::uint32_t GridIndex::for_each_radius(float radius_mm, std::span<Neighbour> s
   std::uint32_t num_cut_short = 0;
   NearPoints near = near_points();
   for (std::uint32_t block = 0; block < tree_.num_blocks(); ++block) {
-    const bool fits = near.collect(block, tree_.box_of_block(block), squared_mm2);
+    const bool fits = near.collect(block, tree_.node_of(block), tree_.box_of_block(block),
+                                   {squared_mm2, squared_mm2});
     for (std::uint32_t at = CellTree::first_of(block); at < tree_.end_of(block); ++at) {
       const Cell& cell = tree_.cells()[at];
       const NearView points = fits ? near.all_of(at, tree_.box_of(at), squared_mm2) : NearView{};

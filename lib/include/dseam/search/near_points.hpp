@@ -63,18 +63,8 @@ class BoxGaps {
 /// An appendable list of points over lent storage.
 class PointList {
  public:
-  [[nodiscard]] static constexpr std::size_t floats_of(std::size_t capacity) noexcept {
-    return 3 * (capacity + kLanes);
-  }
-  [[nodiscard]] static constexpr std::size_t indices_of(std::size_t capacity) noexcept {
-    return capacity + kLanes;
-  }
-  PointList(std::span<float> floats, std::span<std::uint32_t> indices) noexcept
-      : x_(floats.data()),
-        y_(floats.data() + indices.size()),
-        z_(floats.data() + 2 * indices.size()),
-        index_(indices.data()),
-        capacity_(indices.size() - kLanes) {}
+  PointList(float* x, float* y, float* z, std::uint32_t* index, std::size_t capacity) noexcept
+      : x_(x), y_(y), z_(z), index_(index), capacity_(capacity) {}
 
   void clear() noexcept { count_ = 0; }
   /// For all eight; else append() must not be called.
@@ -111,30 +101,49 @@ struct Ring {
   float upto_mm2;
 };
 
-/// The points around the eight cells of a lowest node of the tree, found once for all of them and
-/// then narrowed for each: what lies side by side in memory is looked at without a branch.
+/// The cells around the eight cells of a lowest node of the tree, found once for all of them, and
+/// for each of the eight the points of those that lie around it.
 ///
-/// Memory:  17 kB, lent.
+/// Memory:  18 kB, lent.
 class NearPoints {
  public:
-  static constexpr std::size_t kCapacity = 512;
-  static constexpr std::size_t kFloats = 2 * PointList::floats_of(kCapacity);
-  static constexpr std::size_t kIndices = 2 * PointList::indices_of(kCapacity);
+  static constexpr std::size_t kMostCells = 128;
+  static constexpr std::size_t kCapacity = kMostCells * kLanes;
 
-  NearPoints(const CellTree& tree, std::span<float> floats,
-             std::span<std::uint32_t> indices) noexcept
+  /// Squared distances from the boxes of the eight.
+  struct Reaches {
+    float near_mm2;
+    float far_mm2;
+  };
+  /// Which of the cells that were found lie around one of the eight: a bit each.
+  struct CellSet {
+    std::uint64_t words[kMostCells / 64];
+  };
+  struct Memory {
+    alignas(32) float x[kCapacity + kLanes];
+    alignas(32) float y[kCapacity + kLanes];
+    alignas(32) float z[kCapacity + kLanes];
+    alignas(32) std::uint32_t index[kCapacity + kLanes];
+    std::uint32_t cells[kMostCells];
+    CellSet near[kLanes];
+    CellSet far[kLanes];
+  };
+
+  NearPoints(const CellTree& tree, Memory& memory) noexcept
       : tree_(tree),
-        of_block_(floats.first(kFloats / 2), indices.first(kIndices / 2)),
-        of_cell_(floats.last(kFloats / 2), indices.last(kIndices / 2)) {}
+        memory_(memory),
+        of_cell_(memory.x, memory.y, memory.z, memory.index, kCapacity) {}
 
-  /// Takes all points of the cells of `block`, and of the others those within reach of the box.
-  /// False when they are too many.
-  [[nodiscard]] bool collect(std::uint32_t block, const Box& box, float squared_mm2) noexcept;
+  /// Finds the cells within reach of `boxes`, one for each cell of `block`, all of them in
+  /// `around`. False when they are too many.
+  [[nodiscard]] bool collect(std::uint32_t block, const Node& boxes, const Box& around,
+                             Reaches reaches) noexcept;
 
-  /// Of what was collected the points around the box of cell `at` of that block, but its own; their
-  /// indices are not given.
+  /// Of what was collected the points around the box of cell `at` of that block, but its own;
+  /// `ring` ends where one of the reaches does. With their indices, or without.
+  template <bool kIndices>
   [[nodiscard]] NearView others_of(std::uint32_t at, const Box& box, Ring ring) noexcept;
-  /// The same with its own points, which come first.
+  /// The points within the far reach, with the cell's own, which come first.
   [[nodiscard]] NearView all_of(std::uint32_t at, const Box& box, float squared_mm2) noexcept;
 
   /// The points of other cells around a box of points of cell `at`, whatever was collected. None
@@ -171,11 +180,13 @@ class NearPoints {
   }
 
  private:
-  void narrow(const BoxGaps& gaps, Ring ring, std::size_t from, std::size_t to) noexcept;
+  template <bool kIndices>
+  void take(const CellSet& set, std::uint64_t but, const BoxGaps& gaps, Ring ring) noexcept;
 
   const CellTree& tree_;
-  PointList of_block_;
+  Memory& memory_;
   PointList of_cell_;
+  float near_mm2_ = 0.0F;
 };
 
 }  // namespace dseam::search
