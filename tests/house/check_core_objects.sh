@@ -6,7 +6,7 @@
 set -euo pipefail
 nm=$1 objdump=$2 library=$3
 
-core='cell_tree|curve_order|grid_batch|grid_index|near_points|voxel_hash|unproject|crop_box|frame_fuser|normals|organized_normals|orientation|outlier_removal|radius_outlier_removal|voxel_downsample|voxel_map|symmetric_eigen3|boundary'
+core='cell_runs|cell_tree|curve_order|grid_batch|grid_index|near_points|voxel_hash|unproject|crop_box|frame_fuser|normals|organized_normals|orientation|outlier_removal|radius_outlier_removal|voxel_downsample|voxel_map|symmetric_eigen3|boundary'
 allowed='^(mem(cpy|move|set|cmp)|sqrtf?|floorf?|__stack_chk_fail|__popcount[sdt]i2|_GLOBAL_OFFSET_TABLE_|_ZNK?5dseam.*)$'
 
 "$nm" -A --undefined-only --format=posix "$library" 2>/dev/null |

@@ -179,9 +179,23 @@ class NearestOfAll {
       if (cell.index[i] != kNoPoint) {
         std::array<Neighbour, Best::kMost + 1> room;
         NearestList list({room.data(), k_ + 1}, known[i]);
-        offer_all(tree_, {cell.x[i], cell.y[i], cell.z[i]}, list);
+        offer_around(at, {cell.x[i], cell.y[i], cell.z[i]}, list);
         take_others(room, cell.index[i], i, best);
       }
+    }
+  }
+  void offer_around(std::uint32_t at, geometry::Vec3f point, NearestList& list) noexcept {
+    const float limit_mm2 = list.limit().squared_mm2;
+    const NearView others = limit_mm2 <= kStray * reach_mm2_
+                                ? near_.others_around(at, box_at(point), limit_mm2)
+                                : NearView{};
+    if (others.count == 0) {
+      offer_all(tree_, point, list);
+      return;
+    }
+    list.offer(EightPoints::of(tree_.cells()[at]), point);
+    for (std::size_t i = 0; i < others.count; i += kLanes) {
+      list.offer(EightPoints::of(others, i), point);
     }
   }
   // Of the k + 1 nearest in a place those that are not the point itself; among many in one place it

@@ -130,8 +130,8 @@ class CellTree {
   }
   [[nodiscard]] Box box_of_block(std::uint32_t block) const noexcept;
 
-  /// Calls `visit(cell)` for every cell within `reach()` of `box`, at each step down the tree the
-  /// nearest first. `reach` may shrink meanwhile.
+  /// Calls `visit(cell)` for every cell within `reach()` of `box`, at each step down the tree but
+  /// the last the nearest first. `reach` may shrink meanwhile.
   ///
   /// Time:    bounded by the number of cells; no recursion.
   template <typename ReachOf, typename Visit>
@@ -139,16 +139,18 @@ class CellTree {
                            const Visit& visit) const noexcept {
     std::array<Open, kMaxLevels> open;
     std::size_t level = num_levels_ - 1;
-    if (num_levels_ > 0) {
+    if (num_levels_ == 1) {
+      visit_children(0, box, reach, visit);
+    } else if (num_levels_ > 1) {
       open[level] = open_node(level, 0, box);
     }
-    while (level < num_levels_) {
+    while (level > 0 && level < num_levels_) {
       const std::uint32_t lane = open[level].take_nearest(reach());
       const std::uint32_t child = first_of(open[level].number) + lane;
       if (lane == kLanes) {
         ++level;
-      } else if (level == 0) {
-        visit(child);
+      } else if (level == 1) {
+        visit_children(child, box, reach, visit);
       } else {
         --level;
         open[level] = open_node(level, child, box);
@@ -221,6 +223,15 @@ class CellTree {
       near |= (n.first_index[lane] < reach.index ? 1U : 0U) << lane;
     }
     return near;
+  }
+
+  /// The cells of a lowest node: not worth an order.
+  template <typename ReachOf, typename Visit>
+  void visit_children(std::uint32_t node, const Box& box, const ReachOf& reach,
+                      const Visit& visit) const noexcept {
+    for (std::uint32_t left = near_children(0, node, box, reach()); left != 0; left &= left - 1) {
+      visit(first_of(node) + static_cast<std::uint32_t>(std::countr_zero(left)));
+    }
   }
 
   template <typename ReachOf, typename Visit>
