@@ -45,7 +45,7 @@ Scan scan_of(const Cell& cell) {
   return scan;
 }
 
-void judge(const TruthCurve& truth, std::span<const seam::SeamPoint> points,
+void score(const TruthCurve& truth, std::span<const seam::SeamPoint> points,
            const geometry::RigidTransform& correction, std::uint64_t seed, Outcome& out) {
   const test::SeamAccuracy all = test::measure_seam(points, truth, correction);
   const test::SeamAccuracy measured = test::measure_measured(points, truth, correction);
@@ -91,7 +91,7 @@ void find_with_true_poses(const Cell& cell, const Scan& scan, std::uint64_t seed
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   const auto truth = cell.seam();
   if (truth && !points.empty()) {
-    judge(*truth, points.view(), {}, seed, out);
+    score(*truth, points.view(), {}, seed, out);
   }
 }
 
@@ -119,7 +119,7 @@ void find_with_spliced_poses(const Cell& cell, const Scan& scan, std::uint64_t s
       poses.push_back({cell.views()[i].T_base_camera, pipeline->views()[i].T_base_camera});
     }
   }
-  judge(*truth, pipeline->seam_points(), test::base_correction(poses, *truth), seed, out);
+  score(*truth, pipeline->seam_points(), test::base_correction(poses, *truth), seed, out);
 }
 
 }  // namespace

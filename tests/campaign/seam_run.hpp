@@ -22,7 +22,7 @@ struct Outcome {
 };
 
 /// Scans the part with frames of 1296 by 966 pixels over `shrink` each way, finds its seam with the
-/// row's poses, and judges it by the truth.
+/// row's poses, and scores it by the truth.
 [[nodiscard]] Outcome run(const Row& row, std::uint64_t seed, std::uint32_t shrink = 1);
 
 }  // namespace dseam::campaign

@@ -59,7 +59,7 @@ geometry::Matrix6 about_centre(const hal::sim::TruthCurve& seam, Eigen::Vector3d
   return here;
 }
 
-SpliceOutcome judge(const hal::sim::Cell& cell, std::span<const splice::SplicedView> spliced,
+SpliceOutcome score(const hal::sim::Cell& cell, std::span<const splice::SplicedView> spliced,
                     const splice::NetworkReport& report) {
   SpliceOutcome out;
   out.spliced = report.num_used == cell.views().size();
@@ -108,7 +108,7 @@ SpliceOutcome splice_seed(const SpliceRow& row, std::uint64_t seed) {
   std::vector<splice::SplicedView> storage(config.views.count);
   Buffer<splice::SplicedView> spliced(storage);
   const auto report = chain.value().finish(spliced);
-  return judge(cell.value(), spliced.view(), report);
+  return score(cell.value(), spliced.view(), report);
 }
 
 void SpliceTable::add(std::uint64_t seed, const SpliceOutcome& outcome) {

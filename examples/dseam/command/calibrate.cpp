@@ -10,7 +10,7 @@
 #include "files/hand_eye_file.hpp"
 #include "files/output_folder.hpp"
 #include "input/json_reader.hpp"
-#include "report/svg_chart.hpp"
+#include "report/text.hpp"
 #include "scan/marker_stations.hpp"
 
 namespace dseam::program {

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "command/commands.hpp"
+#include "files/products.hpp"
 #include "input/cloud_reader.hpp"
 #include "job/extract_job.hpp"
-#include "job/products.hpp"
-#include "job/verdict.hpp"
+#include "report/verdict.hpp"
 
 namespace dseam::program {
 namespace {

@@ -6,13 +6,13 @@
 
 #include "command/commands.hpp"
 #include "dseam/seam/curve/closed_curve_fit.hpp"
+#include "files/products.hpp"
 #include "input/cloud_reader.hpp"
-#include "job/curve_report.hpp"
 #include "job/lent_memory.hpp"
-#include "job/products.hpp"
 #include "job/stopwatch.hpp"
-#include "job/verdict.hpp"
-#include "report/svg_chart.hpp"
+#include "report/curve_report.hpp"
+#include "report/text.hpp"
+#include "report/verdict.hpp"
 
 namespace dseam::program {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "command/commands.hpp"
 #include "files/hand_eye_file.hpp"
+#include "files/products.hpp"
 #include "job/cloud_splice_job.hpp"
-#include "job/products.hpp"
 #include "job/scan_job.hpp"
 #include "scan/replay_scan.hpp"
 #include "terminal/interrupt.hpp"

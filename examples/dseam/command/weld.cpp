@@ -5,8 +5,8 @@
 
 #include "command/commands.hpp"
 #include "files/hand_eye_file.hpp"
+#include "files/products.hpp"
 #include "job/motion_job.hpp"
-#include "job/products.hpp"
 #include "job/scan_job.hpp"
 #include "job/stopwatch.hpp"
 #include "robot/drive_robot.hpp"

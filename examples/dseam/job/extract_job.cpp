@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "failure.hpp"
-#include "job/curve_report.hpp"
-#include "job/verdict.hpp"
+#include "report/curve_report.hpp"
+#include "report/verdict.hpp"
 
 namespace dseam::program {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "job/stopwatch.hpp"
-#include "job/verdict.hpp"
-#include "report/page_tables.hpp"
+#include "report/job_report.hpp"
+#include "report/verdict.hpp"
 
 namespace dseam::program {
 namespace {

@@ -49,4 +49,8 @@ struct JobReport {
   std::vector<std::pair<std::string, std::string>> robot;  ///< What the robot's side said.
 };
 
+/// The root of the sum of squares: the parts are independent.
+[[nodiscard]] double total_sigma_mm(const std::vector<BudgetRow>& budget);
+[[nodiscard]] const char* name(splice::ViewState state) noexcept;
+
 }  // namespace dseam::program

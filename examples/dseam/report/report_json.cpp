@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "files/csv_writers.hpp"
-#include "report/page_tables.hpp"
+#include "report/job_report.hpp"
 
 namespace dseam::program {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "run_program.hpp"
+#include "program/support/run_program.hpp"
 
 namespace dseam::program {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/verdict.hpp"
+#include "report/verdict.hpp"
 
 #include <numbers>
 
-#include "report/svg_chart.hpp"
+#include "report/text.hpp"
 
 namespace dseam::program {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/page.hpp"
+#include "page/page.hpp"
 
 #include <cmath>
 #include <numbers>
 
-#include "report/page_charts.hpp"
-#include "report/page_style.hpp"
-#include "report/page_tables.hpp"
-#include "report/seam_picture.hpp"
-#include "report/svg_chart.hpp"
+#include "page/page_charts.hpp"
+#include "page/page_style.hpp"
+#include "page/page_tables.hpp"
+#include "page/seam_picture.hpp"
+#include "report/text.hpp"
 
 namespace dseam::program {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 
-#include "run_program.hpp"
+#include "program/support/run_program.hpp"
 
 namespace dseam::program {
 namespace {

@@ -18,8 +18,4 @@ namespace dseam::program {
 [[nodiscard]] std::string robot_table(
     const std::vector<std::pair<std::string, std::string>>& robot);
 
-/// The root of the sum of squares: the parts are independent.
-[[nodiscard]] double total_sigma_mm(const std::vector<BudgetRow>& budget);
-[[nodiscard]] const char* name(splice::ViewState state) noexcept;
-
 }  // namespace dseam::program

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cell_figures.hpp"
+#include "program/support/cell_figures.hpp"
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -85,7 +85,7 @@ std::vector<dseam::test::ViewPoses> poses_in(const std::string& found, const std
 
 }  // namespace
 
-dseam::test::SeamAccuracy judge_weld(const std::string& out, const std::string& truth) {
+dseam::test::SeamAccuracy score_weld(const std::string& out, const std::string& truth) {
   const hal::sim::TruthCurve curve = truth_in(truth + "/truth_seam.csv");
   const auto poses = poses_in(out + "/poses.json", truth + "/truth_poses.json");
   return dseam::test::measure_seam(seam_in(out + "/seam.csv"), curve,

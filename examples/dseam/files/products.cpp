@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/products.hpp"
+#include "files/products.hpp"
 
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "files/cloud_writer.hpp"
 #include "files/csv_writers.hpp"
-#include "report/page.hpp"
+#include "page/page.hpp"
 #include "report/report_json.hpp"
-#include "report/svg_chart.hpp"
+#include "report/text.hpp"
 
 namespace dseam::program {
 

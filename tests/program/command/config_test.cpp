@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "run_program.hpp"
+#include "program/support/run_program.hpp"
 
 namespace dseam::program {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cell_figures.hpp"
+#include "program/support/cell_figures.hpp"
 
 #include <gtest/gtest.h>
 
 #include <ostream>
 
-#include "run_program.hpp"
+#include "program/support/run_program.hpp"
 
 namespace dseam::program {
 namespace {
@@ -49,7 +49,7 @@ void expect_figures(const Part& part, int first_seed, int last_seed) {
     const test::ScratchFolder scratch;
     const test::Outcome outcome = weld(scratch, part, seed);
     ASSERT_EQ(outcome.exit_code, 0) << "seed " << seed << '\n' << outcome.text;
-    runs.push_back(test::judge_weld(scratch.path("out"), scratch.path("truth")));
+    runs.push_back(test::score_weld(scratch.path("out"), scratch.path("truth")));
     least_coverage = std::min(least_coverage, runs.back().coverage);
     EXPECT_GE(runs.back().coverage, kMinCoverage) << "seed " << seed;
     EXPECT_LE(runs.back().rmse_mm, 2.0 * kMaxRmseMm) << "seed " << seed;

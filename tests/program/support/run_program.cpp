@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "run_program.hpp"
+#include "program/support/run_program.hpp"
 
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/page.hpp"
+#include "page/page.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "nozzle_job.hpp"
-#include "report/page_tables.hpp"
+#include "program/support/nozzle_job.hpp"
+#include "report/job_report.hpp"
 
 namespace dseam::program {
 namespace {

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/seam_picture.hpp"
+#include "page/seam_picture.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "page/svg_chart.hpp"
 #include "picture/point_picture.hpp"
 #include "report/loop_profile.hpp"
-#include "report/svg_chart.hpp"
+#include "report/text.hpp"
 
 namespace dseam::program {
 namespace {

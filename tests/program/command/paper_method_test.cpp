@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "run_program.hpp"
+#include "program/support/run_program.hpp"
 
 namespace dseam::program {
 namespace {

@@ -8,11 +8,11 @@
 
 namespace dseam::program::test {
 
-/// What `dseam weld` left in a folder, judged by what `--truth` left in another: nothing but the
+/// What `dseam weld` left in a folder, scored by what `--truth` left in another: nothing but the
 /// files is read.
 ///
 /// Errors:  throws std::runtime_error where a file is missing or malformed.
-[[nodiscard]] dseam::test::SeamAccuracy judge_weld(const std::string& out,
+[[nodiscard]] dseam::test::SeamAccuracy score_weld(const std::string& out,
                                                    const std::string& truth);
 
 }  // namespace dseam::program::test

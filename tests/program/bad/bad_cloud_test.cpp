@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "run_program.hpp"
+#include "program/support/run_program.hpp"
 
 namespace dseam::program {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "job/curve_report.hpp"
+#include "report/curve_report.hpp"
 
 #include <numbers>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nozzle_job.hpp"
+#include "program/support/nozzle_job.hpp"
 
 #include <cmath>
 #include <numbers>

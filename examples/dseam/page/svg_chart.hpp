@@ -25,9 +25,5 @@ struct Chart {
 };
 
 [[nodiscard]] std::string svg(const Chart& chart);
-/// Text with what XML reserves escaped.
-[[nodiscard]] std::string escaped(const std::string& text);
-/// A number with `digits` behind the point, without a sign on zero.
-[[nodiscard]] std::string fixed(double value, int digits);
 
 }  // namespace dseam::program

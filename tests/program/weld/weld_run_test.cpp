@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "job/motion_job.hpp"
-#include "nozzle_job.hpp"
+#include "program/support/nozzle_job.hpp"
 #include "robot/sim_robot_side.hpp"
 
 namespace dseam::program {

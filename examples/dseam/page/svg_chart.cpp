@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/svg_chart.hpp"
+#include "page/svg_chart.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+
+#include "report/text.hpp"
 
 namespace dseam::program {
 namespace {
@@ -161,35 +161,5 @@ class Plot {
 }  // namespace
 
 std::string svg(const Chart& chart) { return Plot(chart, y_axis(chart)).text(); }
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
-std::string fixed(double value, int digits) {
-  std::array<char, 64> text{};
-  const double cleared = std::abs(value) < 0.5 * std::pow(10.0, -digits) ? 0.0 : value;
-  const int size = std::snprintf(text.data(), text.size(), "%.*f", digits, cleared);
-  return {text.data(), std::min(text.size() - 1, static_cast<std::size_t>(size))};
-}
 
 }  // namespace dseam::program

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/page_charts.hpp"
+#include "page/page_charts.hpp"
 
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numbers>
 
+#include "page/svg_chart.hpp"
 #include "report/loop_profile.hpp"
-#include "report/svg_chart.hpp"
 
 namespace dseam::program {
 namespace {

@@ -9,7 +9,7 @@
 #include "dseam/geometry/rigid_transform.hpp"
 #include "failure.hpp"
 #include "files/hand_eye_file.hpp"
-#include "run_program.hpp"
+#include "program/support/run_program.hpp"
 
 namespace dseam::program {
 namespace {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "run_program.hpp"
+#include "program/support/run_program.hpp"
 #include "support/measured_data.hpp"
 
 namespace dseam::program {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "report/page_tables.hpp"
+#include "page/page_tables.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <initializer_list>
 
-#include "report/svg_chart.hpp"
+#include "report/text.hpp"
 
 namespace dseam::program {
 namespace {
@@ -35,21 +35,6 @@ std::string count_text(double count) {
 }
 
 }  // namespace
-
-const char* name(splice::ViewState state) noexcept {
-  constexpr std::array kNames{"used",  "no overlap", "contradicts", "unobservable",
-                              "empty", "duplicate",  "ambiguous"};
-  static_assert(kNames.size() == splice::kNumViewStates);
-  return kNames[static_cast<std::size_t>(state)];
-}
-
-double total_sigma_mm(const std::vector<BudgetRow>& budget) {
-  double sum = 0.0;
-  for (const BudgetRow& row : budget) {
-    sum += row.sigma_mm * row.sigma_mm;
-  }
-  return std::sqrt(sum);
-}
 
 std::string warnings_list(const std::vector<std::string>& warnings) {
   std::string items;
