@@ -10,7 +10,7 @@ Result<ArcGate> ArcGate::make(const Config& c) noexcept {
   const auto positive = [](double v) { return std::isfinite(v) && v > 0.0; };
   const bool limits = positive(c.max_tracking_mm) && positive(c.speed_tolerance_mm_s) &&
                       positive(c.speed_tolerance_share) && positive(c.max_corridor_mm) &&
-                      c.min_confidence >= 0.0 && c.min_confidence <= 1.0;
+                      c.min_confidence <= seam::Confidence::kHigh;
   const bool times = c.max_data_age_ns > 0 && c.max_pose_age_ns > 0 && c.max_stream_age_ns > 0 &&
                      c.max_standing_ns > 0;
   const bool box = (c.workspace.low_mm.array() < c.workspace.high_mm.array()).all();

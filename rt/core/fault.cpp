@@ -21,6 +21,8 @@ const char* name(Fault fault) noexcept {
                                     "SetPointSpeed",
                                     "SetPointAcceleration",
                                     "SetPointJerk",
+                                    "SetPointTurn",
+                                    "SetPointEnd",
                                     "SetPointOrder",
                                     "VisionSilent",
                                     "ClockJump",

@@ -16,9 +16,9 @@ bool is_finite(const trajectory::SetPoint& point) noexcept {
 }  // namespace
 
 Result<MotionGate> MotionGate::make(const Config& c) noexcept {
-  const double limits[] = {c.max_start_mm,  c.max_start_rad,  c.max_step_mm,
-                           c.max_step_rad,  c.max_speed_mm_s, c.max_acceleration_mm_s2,
-                           c.max_jerk_mm_s3};
+  const double limits[] = {c.max_start_mm,   c.max_start_rad,  c.max_step_mm,
+                           c.max_step_rad,   c.max_speed_mm_s, c.max_acceleration_mm_s2,
+                           c.max_jerk_mm_s3, c.max_turn_rad_s};
   for (const double limit : limits) {
     if (!(std::isfinite(limit) && limit > 0.0)) {
       return Errc::kInvalidArgument;
@@ -81,7 +81,23 @@ Fault MotionGate::check_step(const trajectory::SetPoint& point) noexcept {
   if (acceleration.norm() > config_.max_acceleration_mm_s2) {
     return Fault::kSetPointAcceleration;
   }
-  return jerk.norm() > config_.max_jerk_mm_s3 ? Fault::kSetPointJerk : Fault::kNone;
+  if (jerk.norm() > config_.max_jerk_mm_s3) {
+    return Fault::kSetPointJerk;
+  }
+  return turned_rad > config_.max_turn_rad_s * dt_s ? Fault::kSetPointTurn : Fault::kNone;
+}
+
+/// As if it were sent again and again: one step brings the speed to zero, the next one the
+/// acceleration.
+bool MotionGate::can_stand_at(const trajectory::SetPoint& last, std::uint32_t step_us) noexcept {
+  trajectory::SetPoint still = last;
+  for (int i = 0; i < 2; ++i) {
+    still.t_us += step_us;
+    if (check(still) != Fault::kNone) {
+      return false;
+    }
+  }
+  return true;
 }
 
 MotionGate::Verdict MotionGate::check_all(const torch::TorchPose& now,
@@ -93,7 +109,12 @@ MotionGate::Verdict MotionGate::check_all(const torch::TorchPose& now,
       return {fault, i};
     }
   }
-  return {};
+  if (points.size() < 2) {
+    return {};
+  }
+  const std::size_t last = points.size() - 1;
+  const bool stands = can_stand_at(points[last], points[last].t_us - points[last - 1].t_us);
+  return stands ? Verdict{} : Verdict{Fault::kSetPointEnd, last};
 }
 
 }  // namespace dseam::rt

@@ -64,6 +64,7 @@ void PathTracker::look_at_place(std::size_t index, ArcInputs& in) const noexcept
   const std::size_t last = std::min(index + kAround, points_.size() - 1);
   in.tracking_mm = (in.p_base - points_[index].pose.p_base).norm();
   in.corridor_mm = in.tracking_mm;
+  in.confidence = std::min(in.confidence, points_[index].confidence);
   in.planned_low_mm_s = points_[index].speed_mm_s;
   in.planned_high_mm_s = points_[index].speed_mm_s;
   for (std::size_t i = first; i < last; ++i) {

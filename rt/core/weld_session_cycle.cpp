@@ -52,7 +52,9 @@ void WeldSession::watch_operator(bool enable) noexcept {
 
 /// What must hold as long as there is a heartbeat, arc or no arc.
 Fault WeldSession::supervise() noexcept {
-  const hal::BusState bus = bus_.health().state;
+  const hal::BusHealth health = bus_.health();
+  const hal::BusState bus = health.state;
+  const bool lost_frames = health.receive_overflow > health_.receive_overflow;  // This cycle.
   overruns_.add(in_.tick.skipped > 0);
   if (link_.report().statuses != statuses_) {
     statuses_ = link_.report().statuses;
@@ -76,6 +78,9 @@ Fault WeldSession::supervise() noexcept {
   }
   if (blocked_ && now_ns_ - blocked_since_ns_ > config_.silence_ns) {
     return Fault::kTxBlocked;
+  }
+  if (lost_frames) {
+    return Fault::kRxOverflow;
   }
   if (!in_.real_time && !config_.allow_degraded) {
     return Fault::kPrivilege;

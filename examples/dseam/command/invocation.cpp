@@ -19,6 +19,7 @@ void Invocation::configure(Settings& settings) const {
   if (!method.empty()) {
     set_key("job.method = \"" + method + '"', keys);
   }
+  check_against_gates(settings);
 }
 
 }  // namespace dseam::program

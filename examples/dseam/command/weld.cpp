@@ -20,6 +20,7 @@ namespace {
 struct Options {
   std::string camera;
   std::string robot = "none";
+  bool waive_operator = false;
   std::filesystem::path hand_eye;
   std::filesystem::path out;
   std::filesystem::path truth;
@@ -82,8 +83,8 @@ ExitCode weld_seam(const Options& options, const Settings& settings, OutputFolde
         "no pose of the robot is known, so the path is not in its base: no robot is driven";
     return ExitCode::kRefused;
   }
-  const DriveReport drive = drive_robot(options.robot, settings.session, motion,
-                                        folder.reserve("can.log"), interrupted, progress);
+  const DriveReport drive = drive_robot(options.robot, options.waive_operator, settings.session,
+                                        motion, folder.reserve("can.log"), interrupted, progress);
   job.stages.push_back({"robot", watch.lap_ms(), {}});
   job.path = motion.points();
   job.robot = drive.facts;
@@ -100,7 +101,7 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   if (settings.method == Method::kPaper) {
     throw Failure(ExitCode::kUsage, "--method paper works on a merged cloud: use dseam extract");
   }
-  check_robot(options.robot);
+  check_robot(options.robot, options.waive_operator);
   const auto T_flange_camera = hand_eye_of(options, settings);
   OutputFolder folder(options.out);
   const std::atomic<bool>& interrupted = watch_for_interrupt();
@@ -142,6 +143,8 @@ void add_weld(CLI::App& app, Invocation& invocation) {
   command->add_option("--camera", options->camera, "sim, replay:SET, aravis:ID or v4l2:DEV")
       ->required();
   command->add_option("--robot", options->robot, "sim, can:IFACE or none")->capture_default_str();
+  command->add_flag("--waive-operator", options->waive_operator,
+                    "arm a real robot without an operator's key on this terminal");
   command->add_option("--hand-eye", options->hand_eye, "hand_eye.json of dseam calibrate");
   command->add_option("--truth", options->truth, "folder for the simulated cell's truth");
   command->add_option("--out", options->out, "folder for the results")->required();

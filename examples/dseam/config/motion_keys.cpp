@@ -37,6 +37,7 @@ std::vector<Key> path_keys(torch::PathPlanner::Config& c) {
       {"path", "lead_in_mm", &c.lead_in_mm, "Slow last part of the approach", "mm", 0, 200},
       {"path", "travel_mm_s", &c.travel_mm_s, "Speed without arc", "mm/s", 1, 1000},
       {"path", "preflow_s", &c.preflow_s, "Gas before the arc", "s", 0, 10},
+      {"path", "ignition_s", &c.ignition_s, "Standing at the start with the arc on", "s", 0, 10},
       {"path", "crater_s", &c.crater_s, "Standing at the end with the arc on", "s", 0, 10},
       {"path", "postflow_s", &c.postflow_s, "Gas after the arc", "s", 0, 30},
       {"path", "weave", choice(pass.weave.shape, {"none", "sine", "zig_zag", "triangle", "circle"}),

@@ -52,4 +52,9 @@ struct Settings {
 /// The table of all keys, bound to `settings`, which must outlive it.
 [[nodiscard]] std::vector<Key> keys_of(Settings& settings);
 
+/// Refuses a plan's limits that the gates of the weld would not let pass, before anything moves.
+///
+/// Errors:  throws Failure(kUsage): a line for each contradiction, with the names of both keys.
+void check_against_gates(const Settings& settings);
+
 }  // namespace dseam::program

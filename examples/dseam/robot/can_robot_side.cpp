@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot/can_robot_side.hpp"
 
-#include "dseam/hal/socketcan/link_check.hpp"
 #include "dseam/rt/linux/thread_setup.hpp"
 #include "failure.hpp"
 
@@ -22,11 +21,12 @@ bool set_up_for_real_time() {
 
 }  // namespace
 
-void check_can(const std::string& interface) {
+hal::socketcan::LinkInfo check_can(const std::string& interface) {
   const auto link = hal::socketcan::read_link(interface);
   if (!link.ok()) {
     fail_to_open(interface, link.error());
   }
+  return link.value();
 }
 
 std::unique_ptr<hal::socketcan::SocketCanBus> open_can(const std::string& interface, bool classic) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "dseam/hal/socketcan/link_check.hpp"
 #include "dseam/hal/socketcan/socketcan_bus.hpp"
 #include "dseam/rt/linux/monotonic_clock.hpp"
 #include "robot/last_words.hpp"
@@ -35,8 +36,9 @@ class CanRobotSide final : public RobotSide {
   LastWords last_words_;
 };
 
-/// Throws Failure(kDevice) with the cure where there is no such interface; opens nothing.
-void check_can(const std::string& interface);
+/// What the kernel knows of the interface; opens nothing. Throws Failure(kDevice) with the cure
+/// where there is none.
+hal::socketcan::LinkInfo check_can(const std::string& interface);
 /// Opens a CAN interface. Throws Failure(kDevice) with the cure.
 [[nodiscard]] std::unique_ptr<hal::socketcan::SocketCanBus> open_can(const std::string& interface,
                                                                      bool classic);

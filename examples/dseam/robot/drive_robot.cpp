@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot/drive_robot.hpp"
 
+#include <unistd.h>
+
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -22,6 +24,22 @@ std::unique_ptr<RobotSide> open_robot(const std::string& robot, const WeldRun::C
     return std::make_unique<SimRobotSide>(motion.points().front().pose);
   }
   return std::make_unique<CanRobotSide>(robot.substr(4), config.link.addressing);
+}
+
+/// No simulated robot and no virtual bus: there is iron that moves.
+bool is_real(const std::string& robot) {
+  if (!robot.starts_with("can:")) {
+    return false;
+  }
+  const std::string kind = check_can(robot.substr(4)).kind;
+  return kind != "vcan" && kind != "vxcan";
+}
+
+std::unique_ptr<OperatorEnable> enable_for(const std::string& robot, bool waive_operator) {
+  if (waive_operator || !is_real(robot)) {
+    return std::make_unique<WaivedEnable>();
+  }
+  return std::make_unique<TerminalEnable>(STDIN_FILENO, stderr);
 }
 
 /// Shows how far the weld is, in a thread of its own: the cycle never waits for a terminal.
@@ -69,9 +87,13 @@ void write_log(hal::candump::RecordingBus& bus, const std::filesystem::path& fil
 }
 
 std::string fault_of(const WeldOutcome& outcome) {
+  const char* arc = outcome.health.arc_on ? "arc-off was sent, and the robot did NOT confirm it"
+                                          : "the robot confirmed that the arc is off";
   if (outcome.interrupted) {
-    return outcome.health.arc_on ? "arc-off was sent, and the robot did NOT confirm it"
-                                 : "the robot confirmed that the arc is off";
+    return arc;
+  }
+  if (outcome.released) {
+    return std::string("the operator took the enable back; ") + arc;
   }
   if (outcome.fault != rt::Fault::kNone) {
     return std::string("the weld was stopped: ") + rt::name(outcome.fault);
@@ -105,21 +127,25 @@ void add_facts(const WeldOutcome& outcome, const RobotSide& side, const rt::Cycl
 
 }  // namespace
 
-void check_robot(const std::string& robot) {
+void check_robot(const std::string& robot, bool waive_operator) {
   if (robot != "sim" && robot != "none" && !(robot.starts_with("can:") && robot.size() > 4)) {
     throw Failure(ExitCode::kUsage, "--robot " + robot + ": sim, can:IFACE or none is meant");
   }
-  if (robot.starts_with("can:")) {
-    check_can(robot.substr(4));
+  if (is_real(robot) && !waive_operator && isatty(STDIN_FILENO) == 0) {
+    throw Failure(ExitCode::kUsage, "--robot " + robot +
+                                        ": nobody is at a terminal to enable the weld "
+                                        "(--waive-operator arms without)");
   }
 }
 
-DriveReport drive_robot(const std::string& robot, const WeldRun::Config& config, MotionJob& motion,
+DriveReport drive_robot(const std::string& robot, bool waive_operator,
+                        const WeldRun::Config& config, MotionJob& motion,
                         const std::filesystem::path& can_log, const std::atomic<bool>& interrupted,
                         Progress& progress) {
   const auto side = open_robot(robot, config, motion);
   hal::candump::RecordingBus bus(side->bus(), side->clock(), side->interface(), kRecordedFrames);
-  WeldRun weld(config, *side, bus, interrupted);
+  const auto enable = enable_for(robot, waive_operator);
+  WeldRun weld(config, *side, bus, *enable, interrupted);
   WeldOutcome outcome;
   {
     ShownProgress shown(progress);

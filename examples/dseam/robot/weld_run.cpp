@@ -9,6 +9,7 @@ namespace dseam::program {
 namespace {
 
 constexpr double kAnswerLimitS = 3.0;
+constexpr double kOperatorLimitS = 600.0;
 
 link::Sender sender_of(const link::Sender::Config& config) {
   auto sender = link::Sender::make(config);
@@ -18,9 +19,11 @@ link::Sender sender_of(const link::Sender::Config& config) {
   return sender.value();
 }
 
-rt::WeldSession session_of(const rt::WeldSession::Config& config, link::Sender& sender,
-                           hal::CanBus& bus) {
-  auto session = rt::WeldSession::make(config, sender, bus);
+rt::WeldSession session_of(const WeldRun::Config& config, link::Sender& sender, hal::CanBus& bus) {
+  rt::WeldSession::Config gated = config.session;
+  gated.arc.workspace = gated.motion.workspace = config.workspace;
+  gated.arc.max_standing_ns = static_cast<std::int64_t>(1e9 * config.max_standing_s);
+  auto session = rt::WeldSession::make(gated, sender, bus);
   if (!session.ok()) {
     throw Failure(ExitCode::kUsage, "the configured weld session: a limit is out of range");
   }
@@ -32,12 +35,13 @@ std::uint32_t new_session() { return std::random_device()() | 1U; }
 
 }  // namespace
 
-WeldRun::WeldRun(const Config& config, RobotSide& side, hal::CanBus& bus,
+WeldRun::WeldRun(const Config& config, RobotSide& side, hal::CanBus& bus, OperatorEnable& enable,
                  const std::atomic<bool>& interrupted)
     : side_(side),
+      enable_(enable),
       interrupted_(interrupted),
       sender_(sender_of(config.link)),
-      session_(session_of(config.session, sender_, bus)) {
+      session_(session_of(config, sender_, bus)) {
   inputs_.real_time = side.real_time();
 }
 
@@ -47,16 +51,23 @@ WeldOutcome WeldRun::run(const Planner& plan, const Progress& progress) {
   const auto greeted = [this] {
     return sender_.state() == link::HostState::kIdle && sender_.pose().robot_time_us > 0;
   };
-  if (cycle_until(greeted, kAnswerLimitS)) {
+  if (cycle_until(greeted, kAnswerLimitS) && wait_for_operator()) {
     const trajectory::SetPointView points = plan(sender_.pose().pose);
     outcome.finished = !points.empty() && start(points) && follow(points.size(), progress);
   }
   end_in_order();
   outcome.interrupted = interrupted_;
+  outcome.released = released_;
   outcome.fault = session_.fault();
   outcome.health = session_.health();
   outcome.link = sender_.report();
   return outcome;
+}
+
+/// The enable must come as an edge, and be there when the session arms.
+bool WeldRun::wait_for_operator() {
+  enable_.ask();
+  return cycle_until([this] { return inputs_.operator_enable; }, kOperatorLimitS);
 }
 
 bool WeldRun::start(trajectory::SetPointView points) {
@@ -68,8 +79,6 @@ bool WeldRun::start(trajectory::SetPointView points) {
   if (!session_.order(E::kScan).ok() || !session_.plan(sender_.pose().pose, points).ok()) {
     return false;
   }
-  inputs_.operator_enable = true;
-  cycle();  // The enable must come as an edge.
   return session_.order(E::kArm).ok() && cycle_until(link_is(H::kArmed), kAnswerLimitS) &&
          session_.order(E::kLoad).ok() && cycle_until(link_is(H::kReady), kAnswerLimitS) &&
          session_.order(E::kStart).ok() && cycle_until(link_is(H::kRunning), kAnswerLimitS);
@@ -106,6 +115,9 @@ void WeldRun::cycle() {
   if (interrupted_) {
     session_.trip(rt::Fault::kOperator);  // The abort leaves with this very cycle.
   }
+  const bool held = enable_.held() && !ending_;
+  released_ = released_ || (inputs_.operator_enable && !held && !ending_);
+  inputs_.operator_enable = held;
   session_.step(inputs_);
   times_.wake_up.add(inputs_.tick.woke_ns - inputs_.tick.due_ns);
   times_.compute.add(side_.clock().now_ns() - inputs_.tick.woke_ns);
@@ -113,7 +125,7 @@ void WeldRun::cycle() {
 
 /// Until the robot stands with the arc off, or half a second has passed.
 void WeldRun::end_in_order() {
-  inputs_.operator_enable = false;
+  ending_ = true;
   const std::int64_t end_ns = side_.clock().now_ns() + 500'000'000;
   do {
     cycle();
@@ -122,6 +134,8 @@ void WeldRun::end_in_order() {
             session_.state() == rt::SessionState::kStopping));
 }
 
-bool WeldRun::stopped() const { return interrupted_ || session_.fault() != rt::Fault::kNone; }
+bool WeldRun::stopped() const {
+  return interrupted_ || released_ || session_.fault() != rt::Fault::kNone;
+}
 
 }  // namespace dseam::program

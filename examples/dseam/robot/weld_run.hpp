@@ -8,6 +8,7 @@
 #include "dseam/rt/cycle_times.hpp"
 #include "dseam/rt/weld_session.hpp"
 #include "robot/robot_side.hpp"
+#include "terminal/operator_enable.hpp"
 
 namespace dseam::program {
 
@@ -15,19 +16,24 @@ namespace dseam::program {
 struct WeldOutcome {
   bool finished = false;
   bool interrupted = false;
+  bool released = false;  ///< The operator took the enable back.
   rt::Fault fault = rt::Fault::kNone;
   rt::Health health;
   link::Sender::Report link;
 };
 
 /// Drives one weld session cycle by cycle: greets the robot, plans from where it stands, arms,
-/// loads, starts, and follows it to the end or to the fault that ends it. An interrupt turns the
-/// arc off with the first frame of the cycle that sees it.
+/// loads, starts, and follows it to the end or to the fault that ends it. It arms with the
+/// operator's enable and stops when that is taken back. An interrupt turns the arc off with the
+/// first frame of the cycle that sees it.
 class WeldRun {
  public:
   struct Config {
     rt::WeldSession::Config session;
     link::Sender::Config link;
+    rt::Workspace workspace;  ///< Of both gates of the session,
+    double max_standing_s =
+        1e-9 * static_cast<double>(rt::ArcGate::Config{}.max_standing_ns);  ///< and
   };
   using Progress = std::function<void(std::size_t executed, std::size_t total)>;
   /// Plans from where the torch stands; empty when there is no path from there.
@@ -36,7 +42,7 @@ class WeldRun {
   /// `bus` is that of `side`, or what records it.
   ///
   /// Errors:  throws Failure(kUsage) where the configuration contradicts itself.
-  WeldRun(const Config& config, RobotSide& side, hal::CanBus& bus,
+  WeldRun(const Config& config, RobotSide& side, hal::CanBus& bus, OperatorEnable& enable,
           const std::atomic<bool>& interrupted);
 
   WeldRun(const WeldRun&) = delete;
@@ -48,6 +54,7 @@ class WeldRun {
  private:
   /// Cycles until `done`, at most `limit_s`; false when a fault or an interrupt came first.
   bool cycle_until(const std::function<bool()>& done, double limit_s);
+  bool wait_for_operator();
   bool start(trajectory::SetPointView points);
   bool follow(std::size_t total, const Progress& progress);
   void cycle();
@@ -55,11 +62,14 @@ class WeldRun {
   [[nodiscard]] bool stopped() const;
 
   RobotSide& side_;
+  OperatorEnable& enable_;
   const std::atomic<bool>& interrupted_;
   link::Sender sender_;
   rt::WeldSession session_;
   rt::WeldSession::Inputs inputs_;
   rt::CycleTimes times_;
+  bool released_ = false;
+  bool ending_ = false;
 };
 
 }  // namespace dseam::program

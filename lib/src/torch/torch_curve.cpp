@@ -28,6 +28,7 @@ TorchPoint TorchCurve::at(double s_mm) const noexcept {
   point.tangent = (v * a.tangent + u * b.tangent).normalized();
   point.out = (v * a.out + u * b.out).normalized();
   point.across = (v * a.across + u * b.across).normalized();
+  point.confidence = u > 1e-9 ? std::min(a.confidence, b.confidence) : a.confidence;
   if (u > 1e-9 && (a.weldable != Weldable::kYes || b.weldable != Weldable::kYes)) {
     point.weldable = a.weldable != Weldable::kYes ? a.weldable : b.weldable;
   }

@@ -16,7 +16,7 @@ class TorchCurve {
   [[nodiscard]] bool closed() const noexcept { return view_.closed; }
   /// Distance of neighbouring points.
   [[nodiscard]] double spacing_mm() const noexcept;
-  /// Between two points the torch; `weldable` is the worse of the two.
+  /// Between two points the torch; `weldable` and `confidence` are the worse of the two.
   [[nodiscard]] TorchPoint at(double s_mm) const noexcept;
   /// Turn about the wire on the way from one place to another, forward or backward.
   [[nodiscard]] double wrist_turn(double from_mm, double to_mm) const noexcept;

@@ -201,7 +201,9 @@ TorchPoint TorchPlanner::point_at(const seam::SeamView& seam, std::size_t segmen
   const double chord_mm = a.chord_mm + u * (b.chord_mm - a.chord_mm);
   double work_error_rad = 0.0;
   if (orient(smoothed_joint(seam, segment, chord_mm), point, work_error_rad)) {
-    point.weldable = judge(seam.points[(u < 0.5 ? a : b).source], point, work_error_rad);
+    const seam::SeamPoint& nearest = seam.points[(u < 0.5 ? a : b).source];
+    point.confidence = nearest.confidence;
+    point.weldable = judge(nearest, point, work_error_rad);
   }
   return point;
 }

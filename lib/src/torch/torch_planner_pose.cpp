@@ -88,7 +88,7 @@ Weldable TorchPlanner::judge(const seam::SeamPoint& nearest, const TorchPoint& p
   if (nearest.source == seam::Source::kInterpolated && !config_.weld_interpolated) {
     return Weldable::kInterpolated;
   }
-  if (nearest.source == seam::Source::kMeasured && nearest.confidence < config_.min_confidence) {
+  if (nearest.confidence < config_.min_confidence) {
     return Weldable::kLowConfidence;
   }
   if (!(nearest.gap_mm <= config_.max_gap_mm)) {

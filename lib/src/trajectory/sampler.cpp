@@ -109,6 +109,7 @@ void Sampler::set_process(const torch::PathPoint& point, SetPoint& out) const no
   out.wire = point.wire;
   out.pass = point.pass;
   out.schedule = point.schedule;
+  out.confidence = point.confidence;
 }
 
 bool sample_all(Sampler& sampler, Buffer<SetPoint>& out) noexcept {

@@ -188,7 +188,7 @@ TEST(TorchPlanner, interpolated_doubtful_and_gaping_points_are_not_weldable) {
 TEST(TorchPlanner, interpolated_points_are_weldable_when_the_configuration_allows_it) {
   auto points = Saddle{}.points(360);
   points[5].source = dseam::seam::Source::kInterpolated;
-  points[5].confidence = dseam::seam::Confidence::kNone;
+  points[5].confidence = dseam::seam::Confidence::kLow;
   TorchPlanner::Config config;
   config.weld_interpolated = true;
 
@@ -196,6 +196,22 @@ TEST(TorchPlanner, interpolated_points_are_weldable_when_the_configuration_allow
 
   EXPECT_EQ(planned.report.by_weldable[static_cast<std::size_t>(Weldable::kYes)],
             planned.points.size());
+}
+
+TEST(TorchPlanner, interpolated_points_below_the_confidence_asked_for_are_not_weldable_either) {
+  auto points = Saddle{}.points(360);
+  for (std::size_t i = 0; i < 90; ++i) {
+    points[i].source = dseam::seam::Source::kInterpolated;
+    points[i].confidence = dseam::seam::Confidence::kNone;
+  }
+  TorchPlanner::Config config;
+  config.weld_interpolated = true;
+
+  const Planned planned = plan(config, dseam::test::view_of(points));
+
+  const auto low = static_cast<std::size_t>(Weldable::kLowConfidence);
+  EXPECT_NEAR(planned.report.by_weldable[low], static_cast<double>(planned.points.size()) / 4.0,
+              6.0);
 }
 
 TEST(TorchPlanner, a_joint_without_two_normals_is_degenerate_and_keeps_the_last_orientation) {

@@ -75,6 +75,38 @@ TEST(Config, the_command_line_wins_over_the_file) {
   EXPECT_NE(outcome.text.find("reference = \"gap_middle\""), std::string::npos) << outcome.text;
 }
 
+TEST(Config, what_the_gates_would_stop_is_refused_with_the_names_of_both_keys) {
+  const struct {
+    const char* set;
+    const char* key;
+    const char* gate;
+  } cases[] = {
+      {"path.crater_s=1.6", "path.crater_s", "rt.max_standing_s"},
+      {"path.ignition_s=1.6", "path.ignition_s", "rt.max_standing_s"},
+      {"rt.max_standing_s=0.2", "path.crater_s", "rt.max_standing_s"},
+      {"robot.speed_mm_s=600", "robot.speed_mm_s", "rt.max_speed_mm_s"},
+      {"robot.acceleration_mm_s2=4000", "robot.acceleration_mm_s2", "rt.max_acceleration_mm_s2"},
+      {"robot.jerk_mm_s3=70000", "robot.jerk_mm_s3", "rt.max_jerk_mm_s3"},
+      {"robot.angular_speed_rad_s=4", "robot.angular_speed_rad_s", "rt.max_turn_rad_s"},
+      {"rt.max_step_mm=2", "robot.period_us", "rt.max_step_mm"},
+      {"rt.max_step_rad=0.01", "robot.period_us", "rt.max_step_rad"},
+      {"rt.workspace_min_y_mm=4000", "rt.workspace_min_y_mm", "rt.workspace_max_y_mm"},
+  };
+  for (const auto& c : cases) {
+    const Outcome outcome = run_program({"config", "--set", c.set});
+
+    EXPECT_EQ(outcome.exit_code, 2) << c.set;
+    EXPECT_NE(outcome.text.find(c.key), std::string::npos) << outcome.text;
+    EXPECT_NE(outcome.text.find(c.gate), std::string::npos) << outcome.text;
+  }
+}
+
+TEST(Config, a_limit_that_is_raised_on_both_sides_is_taken) {
+  EXPECT_EQ(
+      run_program({"config", "--set", "path.crater_s=3", "--set", "rt.max_standing_s=4"}).exit_code,
+      0);
+}
+
 TEST(Config, the_documentation_lists_every_key_as_it_is) {
   std::ifstream in(DSEAM_DOCS_DIR "/formats.md");
   std::stringstream formats;

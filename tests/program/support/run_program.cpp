@@ -28,7 +28,7 @@ Outcome run_program(const std::vector<std::string>& arguments) {
   for (const std::string& argument : arguments) {
     command += ' ' + quoted(argument);
   }
-  FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
+  FILE* pipe = ::popen((command + " 2>&1 </dev/null").c_str(), "r");
   if (pipe == nullptr) {
     throw std::runtime_error("popen failed");
   }

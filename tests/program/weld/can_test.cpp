@@ -35,6 +35,16 @@ TEST(CanRobot, an_interface_that_is_not_there_is_named_before_the_scan_and_nothi
   EXPECT_EQ(scratch.names_in("out"), std::set<std::string>{});
 }
 
+TEST(CanRobot, without_a_terminal_a_bus_that_is_not_virtual_needs_the_waiver_by_name) {
+  const test::ScratchFolder scratch;
+
+  const Outcome outcome =
+      run_program({"weld", "--camera", "sim", "--robot", "can:lo", "--out", scratch.path("out")});
+
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.text;
+  EXPECT_NE(outcome.text.find("--waive-operator"), std::string::npos) << outcome.text;
+}
+
 TEST(CanRobot, the_reference_robot_names_an_interface_that_is_not_there) {
   const Outcome outcome = run_program({"robot", "--can", "nosuch0"});
 

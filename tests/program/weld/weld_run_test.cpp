@@ -16,7 +16,7 @@ class WeldRunTest : public ::testing::Test {
 
   WeldOutcome run(const WeldRun::Progress& progress) {
     side_.emplace(motion_.points().front().pose);
-    WeldRun weld(settings_.session, *side_, side_->bus(), interrupted_);
+    WeldRun weld(settings_.session, *side_, side_->bus(), *enable_, interrupted_);
     return weld.run([this](const torch::TorchPose& now) { return motion_.plan_from(now); },
                     progress);
   }
@@ -26,6 +26,18 @@ class WeldRunTest : public ::testing::Test {
   MotionJob motion_;
   std::atomic<bool> interrupted_{false};
   std::optional<SimRobotSide> side_;
+  std::unique_ptr<OperatorEnable> enable_ = std::make_unique<WaivedEnable>();
+};
+
+/// Gives the enable at its first being asked and takes it back when told.
+class HeldByHand final : public OperatorEnable {
+ public:
+  explicit HeldByHand(bool& held) : held_(held) {}
+  void ask() noexcept override { held_ = true; }
+  [[nodiscard]] bool held() const noexcept override { return held_; }
+
+ private:
+  bool& held_;
 };
 
 TEST_F(WeldRunTest, the_robot_executes_every_set_point_and_ends_with_the_arc_off) {
@@ -33,6 +45,29 @@ TEST_F(WeldRunTest, the_robot_executes_every_set_point_and_ends_with_the_arc_off
 
   EXPECT_TRUE(outcome.finished) << rt::name(outcome.fault);
   EXPECT_EQ(side_->robot().executed().size(), motion_.points().size());
+  EXPECT_FALSE(side_->robot().receiver().arc_on());
+}
+
+TEST_F(WeldRunTest, the_arc_goes_off_where_the_seam_is_less_certain_than_configured) {
+  settings_.session.session.arc.min_confidence = seam::Confidence::kHigh;
+  std::vector<seam::SeamPoint> points(nozzle_.job.seam_base.points.begin(),
+                                      nozzle_.job.seam_base.points.end());
+  for (std::size_t i = points.size() / 3; i < points.size() / 2; ++i) {
+    points[i].confidence = seam::Confidence::kMedium;
+  }
+  seam::SeamView seam = nozzle_.job.seam_base;
+  seam.points = points;
+  MotionJob doubtful(settings_, seam);
+  side_.emplace(doubtful.plan().front().pose);
+  WeldRun weld(settings_.session, *side_, side_->bus(), *enable_, interrupted_);
+
+  const WeldOutcome outcome =
+      weld.run([&](const torch::TorchPose& now) { return doubtful.plan_from(now); },
+               [](std::size_t, std::size_t) {});
+
+  EXPECT_FALSE(outcome.finished);
+  EXPECT_EQ(outcome.fault, rt::Fault::kConfidenceLow);
+  EXPECT_GT(side_->robot().executed().size(), doubtful.points().size() / 4);
   EXPECT_FALSE(side_->robot().receiver().arc_on());
 }
 
@@ -56,6 +91,35 @@ TEST_F(WeldRunTest, an_interrupt_while_the_arc_burns_turns_it_off_within_a_cycle
   EXPECT_LE(last_arc_ns - interrupted_ns, 10'000'000);
   EXPECT_FALSE(side_->robot().receiver().arc_on());
   EXPECT_LE(side_->clock().now_ns() - interrupted_ns, 1'000'000'000);
+}
+
+TEST_F(WeldRunTest, an_enable_that_is_taken_back_while_the_arc_burns_stops_the_weld) {
+  bool held = false;
+  enable_ = std::make_unique<HeldByHand>(held);
+
+  const WeldOutcome outcome =
+      run([&](std::size_t, std::size_t) { held = held && !side_->robot().receiver().arc_on(); });
+
+  EXPECT_TRUE(outcome.released);
+  EXPECT_FALSE(outcome.finished);
+  EXPECT_EQ(outcome.fault, rt::Fault::kNone);
+  EXPECT_FALSE(outcome.health.arc_on);
+  EXPECT_FALSE(side_->robot().receiver().arc_on());
+  EXPECT_LT(side_->robot().executed().size(), motion_.points().size());
+}
+
+TEST_F(WeldRunTest, without_an_enable_the_robot_is_never_armed) {
+  class Nobody final : public OperatorEnable {
+   public:
+    void ask() noexcept override {}
+    [[nodiscard]] bool held() const noexcept override { return false; }
+  };
+  enable_ = std::make_unique<Nobody>();
+
+  const WeldOutcome outcome = run([](std::size_t, std::size_t) {});
+
+  EXPECT_FALSE(outcome.finished);
+  EXPECT_TRUE(side_->robot().executed().empty());
 }
 
 }  // namespace

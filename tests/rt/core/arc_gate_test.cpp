@@ -14,13 +14,14 @@ using dseam::hal::BusState;
 using dseam::rt::ArcGate;
 using dseam::rt::ArcInputs;
 using dseam::rt::Fault;
+using dseam::seam::Confidence;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 ArcInputs all_well() {
   ArcInputs in;
   in.armed = true;
-  in.confidence = 0.9;
+  in.confidence = Confidence::kMedium;
   in.bus = BusState::kErrorActive;
   in.speed_mm_s = 8.0;
   in.planned_low_mm_s = 8.0;
@@ -39,8 +40,7 @@ const std::vector<Loss>& losses() {
       {"disarmed", [](ArcInputs& in) { in.armed = false; }, Fault::kNotArmed},
       {"old data", [](ArcInputs& in) { in.data_age_ns = 20'000'001; }, Fault::kDataStale},
       {"old pose", [](ArcInputs& in) { in.pose_age_ns = 60'000'001; }, Fault::kDataStale},
-      {"doubt", [](ArcInputs& in) { in.confidence = 0.49; }, Fault::kConfidenceLow},
-      {"doubt nan", [](ArcInputs& in) { in.confidence = kNan; }, Fault::kConfidenceLow},
+      {"doubt", [](ArcInputs& in) { in.confidence = Confidence::kNone; }, Fault::kConfidenceLow},
       {"stream", [](ArcInputs& in) { in.stream_age_ns = 100'000'001; }, Fault::kStreamStopped},
       {"passive", [](ArcInputs& in) { in.bus = BusState::kErrorPassive; }, Fault::kBusNotActive},
       {"bus off", [](ArcInputs& in) { in.bus = BusState::kBusOff; }, Fault::kBusNotActive},
@@ -97,7 +97,7 @@ TEST(ArcGate, the_limits_themselves_still_hold) {
   in.data_age_ns = 20'000'000;
   in.pose_age_ns = 60'000'000;
   in.bus = BusState::kErrorWarning;
-  in.confidence = 0.5;
+  in.confidence = Confidence::kLow;
   in.stream_age_ns = 100'000'000;
   in.tracking_mm = 5.0;
   in.corridor_mm = 2.0;
@@ -129,9 +129,7 @@ TEST(ArcGate, limits_that_are_none_are_refused) {
   EXPECT_TRUE(refused([](auto& c) { c.speed_tolerance_mm_s = -1.0; }));
   EXPECT_TRUE(refused([](auto& c) { c.speed_tolerance_share = kNan; }));
   EXPECT_TRUE(refused([](auto& c) { c.max_corridor_mm = kNan; }));
-  EXPECT_TRUE(refused([](auto& c) { c.min_confidence = -0.1; }));
-  EXPECT_TRUE(refused([](auto& c) { c.min_confidence = kNan; }));
-  EXPECT_TRUE(refused([](auto& c) { c.min_confidence = 1.1; }));
+  EXPECT_TRUE(refused([](auto& c) { c.min_confidence = static_cast<Confidence>(4); }));
   EXPECT_TRUE(refused([](auto& c) { c.max_data_age_ns = 0; }));
   EXPECT_TRUE(refused([](auto& c) { c.max_pose_age_ns = 0; }));
   EXPECT_TRUE(refused([](auto& c) { c.max_stream_age_ns = -1; }));

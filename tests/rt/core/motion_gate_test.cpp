@@ -65,7 +65,9 @@ TEST(MotionGate, each_breach_alone_is_named_with_its_place) {
       {Fault::kSetPointSpeed, [](auto& c) { c.max_speed_mm_s = 200.0; },
        [](auto& p) { p.pose.p_base.y() = 2.2; }},
       {Fault::kSetPointAcceleration, [](auto&) {}, [](auto& p) { p.pose.p_base.y() = 0.4; }},
-      {Fault::kSetPointJerk, [](auto&) {}, [](auto& p) { p.pose.p_base.y() = 0.08; }}};
+      {Fault::kSetPointJerk, [](auto&) {}, [](auto& p) { p.pose.p_base.y() = 0.08; }},
+      {Fault::kSetPointTurn, [](auto&) {},
+       [](auto& p) { p.pose.q_base_torch = Eigen::AngleAxisd(0.031, Eigen::Vector3d::UnitX()); }}};
   for (const auto& c : cases) {
     auto points = smooth_run();
     c.spoil(points[20]);
@@ -91,6 +93,52 @@ TEST(MotionGate, a_start_that_is_not_where_the_torch_is_is_a_jump) {
   EXPECT_EQ(motion.check_all(turned, points).index, 0U);
 }
 
+TEST(MotionGate, a_run_that_ends_in_motion_is_refused_at_its_last_point) {
+  auto points = smooth_run();
+  points.resize(26);  // Cut off in the middle, where it is fastest.
+  MotionGate motion = gate();
+
+  const auto verdict = motion.check_all({}, points);
+
+  EXPECT_EQ(verdict.fault, Fault::kSetPointEnd);
+  EXPECT_EQ(verdict.index, 25U);
+}
+
+TEST(MotionGate, a_run_that_ends_while_it_brakes_too_hard_to_stand_is_refused) {
+  const auto points = smooth_run();
+  MotionGate motion = gate([](auto& c) { c.max_jerk_mm_s3 = 2000.0; });
+  MotionGate cut = gate([](auto& c) { c.max_jerk_mm_s3 = 10000.0; });
+
+  // The run itself needs 9600 mm/s3 and keeps them to its end; without its last point it does not.
+  EXPECT_EQ(motion.check_all({}, points).fault, Fault::kSetPointJerk);
+  EXPECT_EQ(cut.check_all({}, points).fault, Fault::kNone);
+  EXPECT_EQ(cut.check_all({}, std::span(points).first(49)).fault, Fault::kSetPointEnd);
+}
+
+TEST(MotionGate, a_single_point_stands_where_the_torch_is) {
+  const std::vector<SetPoint> points(1);
+  MotionGate motion = gate();
+
+  EXPECT_EQ(motion.check_all({}, points).fault, Fault::kNone);
+  EXPECT_EQ(motion.check_all({}, {}).fault, Fault::kNone);
+}
+
+TEST(MotionGate, point_by_point_a_turn_that_is_too_fast_is_named_too) {
+  MotionGate motion = gate([](auto& c) { c.max_turn_rad_s = 1.0; });
+  SetPoint point;
+  motion.restart({});
+  (void)motion.check(point);
+  point.t_us = 10'000;
+  point.pose.q_base_torch = Eigen::AngleAxisd(0.0099, Eigen::Vector3d::UnitZ());
+  const Fault slow = motion.check(point);
+  point.t_us = 20'000;
+  point.pose.q_base_torch = Eigen::AngleAxisd(0.0200, Eigen::Vector3d::UnitZ());
+  const Fault fast = motion.check(point);
+
+  EXPECT_EQ(slow, Fault::kNone);
+  EXPECT_EQ(fast, Fault::kSetPointTurn);
+}
+
 TEST(MotionGate, limits_that_are_none_are_refused) {
   const auto refused = [](auto set) {
     MotionGate::Config config;
@@ -102,6 +150,7 @@ TEST(MotionGate, limits_that_are_none_are_refused) {
   EXPECT_TRUE(refused([](auto& c) { c.max_step_rad = kNan; }));
   EXPECT_TRUE(refused([](auto& c) { c.max_speed_mm_s = -1.0; }));
   EXPECT_TRUE(refused([](auto& c) { c.max_jerk_mm_s3 = std::numeric_limits<double>::infinity(); }));
+  EXPECT_TRUE(refused([](auto& c) { c.max_turn_rad_s = 0.0; }));
   EXPECT_TRUE(refused([](auto& c) { c.workspace.low_mm.y() = 1e9; }));
 }
 

@@ -41,23 +41,50 @@ TEST(WeldSession, welds_the_whole_path_and_comes_back_to_idle) {
 }
 
 TEST(WeldSession, each_fault_while_welding_ends_safe_under_its_own_name) {
-  std::uint64_t seed = 1;
   for (const FaultKind& kind : dseam::test::fault_kinds()) {
-    VirtualCell cell(seed++, with_vision());
-    ASSERT_TRUE(weld_half(cell)) << kind.name;
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      VirtualCell cell(seed, with_vision());
+      ASSERT_TRUE(weld_half(cell)) << kind.name;
 
-    kind.begin(cell);
-    cell.run(kind.lasts_ns);
-    const Fault found = cell.session.fault();
-    kind.end(cell);
-    cell.run(1500 * kMs);
+      kind.begin(cell);
+      cell.run(kind.lasts_ns);
+      const Fault found = cell.session.fault();
+      kind.end(cell);
+      cell.run(1500 * kMs);
 
-    EXPECT_NE(std::find(kind.expected.begin(), kind.expected.end(), found), kind.expected.end())
-        << kind.name << " gave " << name(found);
-    EXPECT_EQ(cell.session.state(), found == Fault::kNone ? S::kIdle : S::kSafe) << kind.name;
-    EXPECT_FALSE(cell.arc_on()) << kind.name;
-    EXPECT_EQ(cell.breach(), "") << kind.name;
+      EXPECT_NE(std::find(kind.expected.begin(), kind.expected.end(), found), kind.expected.end())
+          << kind.name << " gave " << name(found) << ", seed " << seed;
+      EXPECT_EQ(cell.session.state(), found == Fault::kNone ? S::kIdle : S::kSafe) << kind.name;
+      EXPECT_FALSE(cell.arc_on()) << kind.name;
+      EXPECT_EQ(cell.breach(), "") << kind.name;
+    }
   }
+}
+
+TEST(WeldSession, a_torch_that_leaves_the_box_of_the_arc_gate_loses_the_arc) {
+  WeldSession::Config config;
+  config.arc.workspace.high_mm.x() = 18.0;
+  VirtualCell cell(26, config);
+  ASSERT_TRUE(weld_half(cell));
+
+  cell.run(400 * kMs);
+
+  EXPECT_EQ(cell.session.fault(), Fault::kOutsideWorkspace);
+  EXPECT_FALSE(cell.arc_on());
+}
+
+TEST(WeldSession, a_torch_that_stands_is_named_when_no_other_limit_finds_it_first) {
+  WeldSession::Config config;
+  config.arc.max_standing_ns = 100 * kMs;
+  config.arc.max_corridor_mm = config.arc.max_tracking_mm = 100.0;
+  VirtualCell cell(27, config);
+  ASSERT_TRUE(weld_half(cell));
+  cell.robot_trouble.frozen = true;
+
+  cell.run(150 * kMs);
+
+  EXPECT_EQ(cell.session.fault(), Fault::kStandstill);
+  EXPECT_FALSE(cell.arc_on());
 }
 
 TEST(WeldSession, after_a_hold_the_rest_of_the_path_is_driven_without_the_arc) {
@@ -73,6 +100,49 @@ TEST(WeldSession, after_a_hold_the_rest_of_the_path_is_driven_without_the_arc) {
   EXPECT_FALSE(cell.arc_on());
   EXPECT_TRUE(cell.run_until([&] { return cell.session.state() == S::kIdle; }, 4000 * kMs));
   EXPECT_EQ(cell.breach(), "");
+}
+
+TEST(WeldSession, the_arc_goes_off_where_the_set_points_say_that_the_seam_is_in_doubt) {
+  VirtualCell cell(24);
+  (void)cell.session.order(E::kScan);
+  std::vector<dseam::trajectory::SetPoint> points(cell.points().begin(), cell.points().end());
+  const std::size_t doubt = points.size() / 2;
+  ASSERT_TRUE(points[doubt].arc);
+  for (std::size_t i = doubt; i < doubt + 10; ++i) {
+    points[i].confidence = dseam::seam::Confidence::kNone;
+  }
+  ASSERT_TRUE(cell.session.plan(points.front().pose, points).ok());
+  (void)cell.session.connect(cell.new_session(), cell.now_ns());
+  cell.run(300 * kMs);
+  ASSERT_TRUE(cell.bring_to(S::kRunning));
+
+  cell.run_until([&] { return cell.session.fault() != Fault::kNone; }, 4000 * kMs);
+  const std::size_t executed = cell.executed();
+  cell.run(1500 * kMs);
+
+  EXPECT_EQ(cell.session.fault(), Fault::kConfidenceLow);
+  EXPECT_GE(executed, doubt);
+  EXPECT_LE(executed, doubt + 4);  // A status every 5 ms, a set point every 10.
+  EXPECT_FALSE(cell.arc_on());
+  EXPECT_EQ(cell.breach(), "");
+}
+
+TEST(WeldSession, frames_lost_for_want_of_room_trip_while_armed_and_are_counted_before) {
+  VirtualCell cell(25);
+  ASSERT_TRUE(cell.bring_to(S::kPlanned));
+  cell.bus.trouble.flood = 600U;
+  cell.run(2 * kMs);
+  cell.bus.trouble.flood = 0U;
+  cell.run(50 * kMs);
+  const Fault before = cell.session.fault();
+  ASSERT_GT(cell.session.health().receive_overflow, 0U);
+  ASSERT_TRUE(cell.bring_to(S::kArmed));
+  cell.bus.trouble.flood = 600U;
+
+  cell.run(1 * kMs);
+
+  EXPECT_EQ(before, Fault::kNone);
+  EXPECT_EQ(cell.session.fault(), Fault::kRxOverflow);
 }
 
 TEST(WeldSession, three_overruns_of_sixty_four_trip_and_one_does_not) {

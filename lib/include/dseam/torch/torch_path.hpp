@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <span>
 
+#include "dseam/seam/seam_curve.hpp"
+
 namespace dseam::torch {
 
 /// Where the torch's frame stands: +z along the wire towards the work, +x along travel.
@@ -45,6 +47,7 @@ struct TorchPoint {
   double dihedral_rad = 0.0;
   double clearance_mm = 0.0;  ///< Of the contact tip to the nearer surface.
   Weldable weldable = Weldable::kDegenerate;
+  seam::Confidence confidence = seam::Confidence::kNone;  ///< Of the seam here.
 };
 
 /// The torch along the whole joint, in the direction of travel and evenly spaced in arc length.
@@ -80,7 +83,8 @@ struct PathPoint {
   bool gas = false;
   bool wire = false;
   std::uint8_t pass = 0;
-  std::uint8_t schedule = 0;  ///< Row of the welding parameter table.
+  std::uint8_t schedule = 0;                              ///< Row of the welding parameter table.
+  seam::Confidence confidence = seam::Confidence::kHigh;  ///< Of the seam; kHigh without arc.
 };
 
 using PathView = std::span<const PathPoint>;

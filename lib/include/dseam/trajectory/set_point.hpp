@@ -26,6 +26,7 @@ struct SetPoint {
   bool wire = false;
   std::uint8_t pass = 0;
   std::uint8_t schedule = 0;
+  seam::Confidence confidence = seam::Confidence::kHigh;  ///< Of the seam; kHigh without arc.
 };
 
 using SetPointView = std::span<const SetPoint>;

@@ -17,6 +17,12 @@ Eigen::Quaterniond about(const Vector3d& axis, double angle_rad) noexcept {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, axis));
 }
 
+/// `s` from that point of the seam on; its confidence matters only where the arc burns.
+Stroke over(const TorchPoint& point, Stroke s) noexcept {
+  s.confidence = s.arc ? point.confidence : seam::Confidence::kHigh;
+  return s;
+}
+
 }  // namespace
 
 TorchPose lifted(const TorchPose& pose, double height_mm) noexcept {
@@ -45,7 +51,7 @@ void BeadWriter::write(const Bead& bead) noexcept {
 }
 
 TorchPose BeadWriter::centre(double x_mm) const noexcept {
-  const TorchPoint point = curve_.at(start_mm_ + x_mm);
+  const TorchPoint point = seam_at(x_mm);
   TorchPose pose = point.pose;
   pose.p_base += pass_->across_mm * point.across + pass_->out_mm * point.out;
   pose.q_base_torch =
@@ -142,7 +148,7 @@ void BeadWriter::lead_in() noexcept {
   }
   s.segment = Segment::kWeld;
   s.arc = s.wire = true;
-  writer_.stand(config_.ignition_s, s);
+  writer_.stand(config_.ignition_s, over(seam_at(bead_.begin_mm), s));
 }
 
 void BeadWriter::weld() noexcept {
@@ -163,19 +169,21 @@ void BeadWriter::along(double from, double to, const Stroke& s) noexcept {
   if (!(to > from)) {
     return;
   }
-  writer_.set_stroke(s);
+  const TorchPoint first = seam_at(from);
+  writer_.set_stroke(over(first, s));
   const double step_mm = std::min(config_.step_mm, step_for(pass_->weave, kWeaveToleranceMm));
   const double steps = std::max(kFewestSteps, std::ceil((to - from) / step_mm));
   Vector3d before = centre(from).p_base;
-  Vector3d t_before = curve_.at(start_mm_ + from).tangent;
+  Vector3d t_before = first.tangent;
   for (double k = 1.0; k <= steps; k += 1.0) {
     const double x = from + (to - from) * k / steps;
     const TorchPose pose = centre(x);
-    const Vector3d t = curve_.at(start_mm_ + x).tangent;
+    const TorchPoint here = seam_at(x);
     const double chord_mm = (pose.p_base - before).norm();
-    writer_.move_to(woven(pose, x), chord_mm * (1.0 + (t - t_before).squaredNorm() / 24.0), s);
+    const double bend = (here.tangent - t_before).squaredNorm() / 24.0;
+    writer_.move_to(woven(pose, x), chord_mm * (1.0 + bend), over(here, s));
     before = pose.p_base;
-    t_before = t;
+    t_before = here.tangent;
   }
 }
 
@@ -183,7 +191,7 @@ void BeadWriter::finish() noexcept {
   Stroke s = stroke(Segment::kCrater, config_.lead_mm_s);
   s.arc = s.gas = s.wire = true;
   s.schedule = pass_->crater_schedule;
-  writer_.stand(config_.crater_s, s);
+  writer_.stand(config_.crater_s, over(seam_at(bead_.end_mm), s));
   s = stroke(Segment::kLeadOut, config_.lead_mm_s);
   s.gas = true;
   writer_.stand(config_.postflow_s, s);

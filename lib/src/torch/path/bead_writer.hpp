@@ -37,6 +37,10 @@ class BeadWriter {
   [[nodiscard]] Stroke stroke(Segment segment, double speed_mm_s) const noexcept {
     return {segment, speed_mm_s, false, false, false, index_, pass_->schedule};
   }
+  /// On the torch curve, `x_mm` from the pass' start.
+  [[nodiscard]] TorchPoint seam_at(double x_mm) const noexcept {
+    return curve_.at(start_mm_ + x_mm);
+  }
 
   [[nodiscard]] double bead_turn() const noexcept;
   [[nodiscard]] double wrist_after(double way_mm) const noexcept;

@@ -18,6 +18,7 @@ void apply(const Stroke& stroke, PathPoint& point) noexcept {
   point.wire = stroke.wire;
   point.pass = stroke.pass;
   point.schedule = stroke.schedule;
+  point.confidence = stroke.confidence;
 }
 
 }  // namespace

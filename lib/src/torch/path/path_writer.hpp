@@ -17,6 +17,7 @@ struct Stroke {
   bool wire = false;
   std::uint8_t pass = 0;
   std::uint8_t schedule = 0;
+  seam::Confidence confidence = seam::Confidence::kHigh;
 };
 
 /// Appends path points and carries their length on. A stroke holds from a point to the next, so

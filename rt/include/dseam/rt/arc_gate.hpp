@@ -8,6 +8,7 @@
 #include "dseam/base/result.hpp"
 #include "dseam/hal/can_bus.hpp"
 #include "dseam/rt/fault.hpp"
+#include "dseam/seam/seam_curve.hpp"
 
 namespace dseam::rt {
 
@@ -27,9 +28,9 @@ struct Workspace {
 /// What the arc gate looks at, taken in one cycle.
 struct ArcInputs {
   bool armed = false;
-  std::int64_t data_age_ns = 0;    ///< Of the newest valid status from the robot,
-  std::int64_t pose_age_ns = 0;    ///< and of the newest pose.
-  double confidence = 0.0;         ///< Of the seam, 0 to 1.
+  std::int64_t data_age_ns = 0;  ///< Of the newest valid status from the robot,
+  std::int64_t pose_age_ns = 0;  ///< and of the newest pose.
+  seam::Confidence confidence = seam::Confidence::kNone;  ///< Of the seam under the torch.
   std::int64_t stream_age_ns = 0;  ///< Since the robot last got further along the set points.
   hal::BusState bus = hal::BusState::kDown;
   double tracking_mm = 0.0;       ///< From the torch to where it was sent.
@@ -51,7 +52,7 @@ class ArcGate {
   struct Config {
     std::int64_t max_data_age_ns = 20'000'000;
     std::int64_t max_pose_age_ns = 60'000'000;
-    double min_confidence = 0.5;
+    seam::Confidence min_confidence = seam::Confidence::kLow;
     std::int64_t max_stream_age_ns = 100'000'000;
     double max_tracking_mm = 5.0;
     double speed_tolerance_mm_s = 5.0;   ///< Around the planned speed,

@@ -24,6 +24,8 @@ enum class Fault : std::uint8_t {
   kSetPointSpeed,         ///< Motion gate.
   kSetPointAcceleration,  ///< Motion gate.
   kSetPointJerk,          ///< Motion gate.
+  kSetPointTurn,          ///< Motion gate: it turns too fast.
+  kSetPointEnd,           ///< Motion gate: it could not stand still after the last one.
   kSetPointOrder,         ///< Motion gate: times that do not rise.
   kVisionSilent,          ///< The vision thread gives no sign of life.
   kClockJump,             ///< Time passed that no cycle saw: suspended, or stopped by a debugger.
@@ -35,7 +37,7 @@ enum class Fault : std::uint8_t {
   kPrivilege,             ///< Real-time scheduling or memory locking was refused.
   kOperator,              ///< The operator, a signal or the program asked for it.
 };
-inline constexpr std::uint8_t kNumFaults = 27;
+inline constexpr std::uint8_t kNumFaults = 29;
 
 /// The name of the fault without its `k`, for logs and tests.
 [[nodiscard]] const char* name(Fault fault) noexcept;

@@ -15,8 +15,8 @@ namespace dseam::rt {
 /// Looks at set points before any of them is sent. It never clamps: what breaks a hard limit is
 /// not sent at all.
 ///
-/// Speed, acceleration and jerk are differences over the set points' own times, so that the gate
-/// shares no code with the planner that it watches.
+/// Speed, acceleration, jerk and turning are differences over the set points' own times, so that
+/// the gate shares no code with the planner that it watches.
 ///
 /// Context: check() O(1); check_all() where a trajectory is accepted, O(points).
 class MotionGate {
@@ -30,6 +30,7 @@ class MotionGate {
     double max_speed_mm_s = 500.0;
     double max_acceleration_mm_s2 = 3000.0;
     double max_jerk_mm_s3 = 60000.0;
+    double max_turn_rad_s = 3.0;
   };
   struct Verdict {
     Fault fault = Fault::kNone;
@@ -43,7 +44,7 @@ class MotionGate {
   void restart(const torch::TorchPose& now) noexcept;
   /// The next set point in order; kNone lets it pass.
   [[nodiscard]] DSEAM_NONBLOCKING Fault check(const trajectory::SetPoint& point) noexcept;
-  /// A whole trajectory from rest at `now`.
+  /// A whole trajectory from rest at `now` to rest: at its end it must be able to stand still.
   [[nodiscard]] Verdict check_all(const torch::TorchPose& now,
                                   trajectory::SetPointView points) noexcept;
 
@@ -51,6 +52,7 @@ class MotionGate {
   explicit MotionGate(const Config& config) noexcept : config_(config) {}
   [[nodiscard]] Fault check_start(const trajectory::SetPoint& point) const noexcept;
   [[nodiscard]] Fault check_step(const trajectory::SetPoint& point) noexcept;
+  [[nodiscard]] bool can_stand_at(const trajectory::SetPoint& last, std::uint32_t step_us) noexcept;
 
   Config config_;
   torch::TorchPose last_;

@@ -47,7 +47,10 @@ class WeldSession {
     Cycle::Tick tick;
     bool operator_enable = false;  ///< First arming condition: a person or a cell controller.
     bool real_time = false;        ///< Scheduling, memory and processor are as asked for.
-    double confidence = 1.0;       ///< Of the seam under the torch.
+    /// What a camera that watches the weld makes of the seam, and for how long it has been silent.
+    /// Without such a camera both stay as they are: then the set points' own confidence counts
+    /// alone.
+    seam::Confidence confidence = seam::Confidence::kHigh;
     std::int64_t vision_silent_ns = 0;
   };
 

@@ -15,7 +15,7 @@ struct FaultKind {
   const char* name;
   std::function<void(VirtualCell&)> begin;
   std::function<void(VirtualCell&)> end;
-  std::vector<rt::Fault> expected;  ///< kNone among them: it may pass unharmed.
+  std::vector<rt::Fault> expected;  ///< Two where either end may be the first to notice.
   std::int64_t lasts_ns = 300'000'000;
 };
 
