@@ -32,8 +32,8 @@ class WeldRun {
     rt::WeldSession::Config session;
     link::Sender::Config link;
     rt::Workspace workspace;  ///< Of both gates of the session,
-    double max_standing_s =
-        1e-9 * static_cast<double>(rt::ArcGate::Config{}.max_standing_ns);  ///< and
+    /// Of the arc gate.
+    double max_standing_s = static_cast<double>(rt::ArcGate::Config{}.max_standing_ns) / 1e9;
   };
   using Progress = std::function<void(std::size_t executed, std::size_t total)>;
   /// Plans from where the torch stands; empty when there is no path from there.

@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double kMinChordMm = 1e-6;
 constexpr double kFewestInWindow = 2.6;  // Half width of the window in point distances, at least.
+constexpr double kWidestShare = 0.05;    // And of the seam's length, at most: it bends with that.
 
 bool in(double v, double low, double high) noexcept { return v >= low && v <= high; }
 
@@ -156,7 +157,8 @@ TorchPlanner::Joint TorchPlanner::smoothed_joint(const seam::SeamView& seam, std
                                                  double chord_mm) const noexcept {
   const double total_mm = stations_[num_segments()].chord_mm;
   const double spacing_mm = total_mm / static_cast<double>(num_segments());
-  const double width_mm = std::max(config_.smoothing_mm, kFewestInWindow * spacing_mm);
+  const double smoothing_mm = std::min(config_.smoothing_mm, kWidestShare * total_mm);
+  const double width_mm = std::max(smoothing_mm, kFewestInWindow * spacing_mm);
   LocalQuadratic place;
   LocalQuadratic shell;
   LocalQuadratic nozzle;

@@ -29,6 +29,9 @@ PathRates largest_rates(const PathSpan& span, double u0, double u1) noexcept {
   // A turn between two samples exceeds both by no more than its own rate allows.
   const double half_gap_mm = 0.5 * (span.s_at(u1) - span.s_at(u0)) / kSamplesPerCell;
   most.turn += half_gap_mm * most.turn_rate;
+  // The tangent's length does so only to second order.
+  most.tangent += 0.5 * half_gap_mm * half_gap_mm *
+                  (most.third + most.curvature * most.curvature / most.tangent);
   return {most.tangent * kSampleMargin, most.curvature * kSampleMargin, most.third * kSampleMargin,
           most.turn * kSampleMargin, most.turn_rate * kSampleMargin};
 }

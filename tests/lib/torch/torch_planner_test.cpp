@@ -56,6 +56,8 @@ double work_angle(const SeamPoint& truth, const TorchPoint& torch) {
 const Saddle kSaddles[] = {{100.0, 40.0, 90 * kDegree, 0.0},  {100.0, 40.0, 60 * kDegree, 0.0},
                            {100.0, 40.0, 65 * kDegree, 15.0}, {108.0, 59.2, 62.9 * kDegree, 1.4},
                            {60.0, 20.0, 75 * kDegree, 20.0},  {300.0, 25.0, 90 * kDegree, 0.0}};
+/// Where smoothing over a fixed length would bend the angles.
+const Saddle kSmallSaddles[] = {{60.0, 12.0, 90 * kDegree, 0.0}, {30.0, 8.0, 70 * kDegree, 4.0}};
 
 TEST(TorchPlanner, work_and_travel_angle_are_within_half_a_degree_of_the_closed_form) {
   for (const Saddle& saddle : kSaddles) {
@@ -85,25 +87,52 @@ TEST(TorchPlanner, work_and_travel_angle_are_within_half_a_degree_of_the_closed_
   }
 }
 
-TEST(TorchPlanner, half_a_degree_also_holds_with_noise_on_normals_and_points) {
-  dseam::Pcg32 random(7);
-  const auto noise = [&](double size) {
-    const auto one = [&] { return size * (random.uniform() + random.uniform() - 1.0) * 2.4; };
+/// The seam with white noise of a hundredth on each coordinate: mm of the points, and of the
+/// normals, which makes them 0.6 degree wrong each.
+std::vector<SeamPoint> noisy(std::vector<SeamPoint> points, std::uint64_t seed) {
+  dseam::Pcg32 random(seed);
+  const auto noise = [&] {
+    const auto one = [&] { return 0.024 * (random.uniform() + random.uniform() - 1.0); };
     return Vector3d(one(), one(), one());
   };
+  for (SeamPoint& point : points) {
+    point.p_base += noise();
+    point.n_shell = (point.n_shell + noise()).normalized();
+    point.n_nozzle = (point.n_nozzle + noise()).normalized();
+  }
+  return points;
+}
+
+TEST(TorchPlanner, half_a_degree_also_holds_with_noise_on_normals_and_points) {
+  TorchPlanner::Config config;
+  config.travel_angle_rad = 10 * kDegree;
   for (const Saddle& saddle : kSaddles) {
-    auto points = saddle.points(720);
-    for (SeamPoint& point : points) {
-      point.p_base += noise(0.01);
-      point.n_shell = (point.n_shell + noise(0.01)).normalized();
-      point.n_nozzle = (point.n_nozzle + noise(0.01)).normalized();
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const auto points = noisy(saddle.points(720), seed);
+
+      const Planned planned = plan(config, dseam::test::view_of(points));
+
+      for (const TorchPoint& point : planned.points) {
+        const SeamPoint truth = saddle.at(saddle.angle_of(point.pose.p_base));
+        const Vector3d wire = point.pose.q_base_torch * Vector3d::UnitZ();
+        EXPECT_NEAR(work_angle(truth, point), 0.5 * truth.dihedral_rad, 0.5 * kDegree);
+        EXPECT_NEAR(std::asin(wire.dot(truth.tangent)), 10 * kDegree, 0.5 * kDegree);
+      }
     }
+  }
+}
+
+TEST(TorchPlanner, smoothing_leaves_a_small_nozzle_its_angles) {
+  for (const Saddle& saddle : kSmallSaddles) {
+    const auto points = saddle.points(360);
 
     const Planned planned = plan({}, dseam::test::view_of(points));
 
     for (const TorchPoint& point : planned.points) {
       const SeamPoint truth = saddle.at(saddle.angle_of(point.pose.p_base));
-      EXPECT_NEAR(work_angle(truth, point), 0.5 * truth.dihedral_rad, 0.7 * kDegree);
+      const Vector3d wire = point.pose.q_base_torch * Vector3d::UnitZ();
+      EXPECT_NEAR(work_angle(truth, point), 0.5 * truth.dihedral_rad, 0.5 * kDegree);
+      EXPECT_NEAR(std::asin(wire.dot(truth.tangent)), 0.0, 0.5 * kDegree);
     }
   }
 }
@@ -116,20 +145,6 @@ TEST(TorchPlanner, arc_length_is_that_of_the_curve_and_not_of_its_chords) {
 
     const double truth_mm = saddle.length_mm();
     EXPECT_NEAR(planned.report.length_mm, truth_mm, 1e-4 * truth_mm);
-  }
-}
-
-TEST(TorchPlanner, orientation_turns_by_less_than_half_a_degree_in_a_set_point_period) {
-  for (const Saddle& saddle : kSaddles) {
-    const auto points = saddle.points(720);
-
-    const Planned planned = plan({}, dseam::test::view_of(points));
-
-    EXPECT_LT(planned.report.max_turn_rad_per_mm * 0.08, 0.5 * kDegree);
-    for (std::size_t i = 1; i < planned.points.size(); ++i) {
-      EXPECT_GT(planned.points[i].pose.q_base_torch.dot(planned.points[i - 1].pose.q_base_torch),
-                0.99);
-    }
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A difference quotient is a mean of the derivative, so it can never exceed the derivative's
-// greatest value: what the differences of the samples exceed, the trajectory exceeds.
+// As the robot sees it: differences of the samples. A difference quotient is a mean, so what it
+// exceeds the trajectory exceeds; exact_limits_test.cpp has the peaks that a mean hides.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -32,7 +32,7 @@ class TorchPlanner {
   struct Config {
     bool reversed = false;           ///< Travel against the order of the seam's points.
     double step_mm = 0.5;            ///< Distance between torch points at most.
-    double smoothing_mm = 3.0;       ///< Half width of the window for tangent and normals.
+    double smoothing_mm = 6.0;       ///< Half width of the window for tangent and normals.
     double work_fraction = 0.5;      ///< Wire's angle over the shell as a share of the dihedral.
     double work_offset_rad = 0.0;    ///< Added to it, towards the nozzle.
     double travel_angle_rad = 0.0;   ///< Positive pushes (the wire points ahead), negative drags.
