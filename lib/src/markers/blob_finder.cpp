@@ -45,7 +45,8 @@ BlobFinder::Report BlobFinder::run(std::span<const std::uint8_t> gray) noexcept 
     if (v - half - 1 >= 0) {
       add_row(gray, v - half - 1, -1);
     }
-    const std::int32_t rows = std::min(v + half, height - 1) - std::max<std::int32_t>(v - half, 0) + 1;
+    const std::int32_t rows =
+        std::min(v + half, height - 1) - std::max<std::int32_t>(v - half, 0) + 1;
     const std::size_t count = find_runs(gray.subspan(static_cast<std::size_t>(v) * width_, width_),
                                         static_cast<std::uint32_t>(rows));
     connect(count, count_above, static_cast<std::uint16_t>(v), report);

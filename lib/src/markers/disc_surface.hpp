@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "dseam/depth/depth_image.hpp"
-#include "dseam/geometry/ellipse.hpp"
+#include "markers/ellipse_edge.hpp"
 
 namespace dseam::markers {
 
@@ -20,14 +20,15 @@ struct SurfaceDisc {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< Towards the camera.
   double radius_mm = 0.0;
   double out_of_round = 0.0;  ///< rms of the rim's points about the circle, over its radius.
+  double sigma_mm = 0.0;      ///< Of the centre along the surface, from how they lie about it.
 };
 
-/// Fits depth as a quadratic of the pixel to the ring around the rim, lays the rim's points on it
-/// and takes the circle through them: that corrects perspective, and the surface's curvature, too.
+/// Fits a quadratic surface to the ring around the rim, lays the rim's edges on it and takes the
+/// circle through them: that corrects perspective and the surface's curvature. The edges and not
+/// the ellipse, since the rim of a disc on a pipe is none, by a tenth of a pixel at a grazing view.
 ///
 /// Time:    a bounded number of pixels, whatever the size of the disc.
-[[nodiscard]] SurfaceDisc lay_on_surface(const depth::DepthImage& frame,
-                                         const geometry::Ellipse& rim,
+[[nodiscard]] SurfaceDisc lay_on_surface(const depth::DepthImage& frame, const EllipseEdge& edge,
                                          double max_hole_depth_mm) noexcept;
 
 }  // namespace dseam::markers

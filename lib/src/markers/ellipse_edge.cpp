@@ -5,116 +5,37 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
 #include "dseam/geometry/symmetric_matrix.hpp"
+#include "markers/gray_profile.hpp"
 
 namespace dseam::markers {
 namespace {
 
-constexpr std::size_t kProfiles = 48;
-constexpr std::size_t kMaxSamples = 33;
-constexpr double kStepPx = 0.5;
 constexpr int kRounds = 3;
 
-struct EdgePoint {
-  double u = 0.0;
-  double v = 0.0;
-  double width_px = 0.0;
-  double step = 0.0;
-};
-
 struct Edges {
-  std::array<EdgePoint, kProfiles> points;
+  std::array<EdgePoint, EllipseEdge::kProfiles> points;
   std::size_t count = 0;
 };
-
-double gray_between(const depth::DepthImage& frame, double u, double v) noexcept {
-  const auto u0 = static_cast<std::uint32_t>(u);
-  const auto v0 = static_cast<std::uint32_t>(v);
-  const double fu = u - u0;
-  const double fv = v - v0;
-  const double upper = (1.0 - fu) * frame.gray_at(u0, v0) + fu * frame.gray_at(u0 + 1, v0);
-  const double lower = (1.0 - fu) * frame.gray_at(u0, v0 + 1) + fu * frame.gray_at(u0 + 1, v0 + 1);
-  return (1.0 - fv) * upper + fv * lower;
-}
-
-bool inside_image(const depth::DepthImage& frame, double u, double v) noexcept {
-  return u >= 0.0 && v >= 0.0 && u < frame.intrinsics.width - 1.0 &&
-         v < frame.intrinsics.height - 1.0;
-}
-
-// One gray profile across the rim, from inside to outside, turned so that it rises.
-struct Profile {
-  std::array<double, kMaxSamples> gray;
-  std::size_t count = 0;
-  double first_px = 0.0;  // Offset of the first sample from the rim, negative inside.
-};
-
-// The step that has the profile's area: it averages noise, where a single crossing does not.
-double equal_area_edge(const Profile& p, double low, double high) noexcept {
-  double inside = 0.0;
-  for (std::size_t i = 0; i < p.count; ++i) {
-    const double share = std::clamp((high - p.gray[i]) / (high - low), 0.0, 1.0);
-    inside += i == 0 || i + 1 == p.count ? 0.5 * share : share;
-  }
-  return p.first_px + inside * kStepPx;
-}
-
-double steepest(const Profile& p) noexcept {
-  double slope = 0.0;
-  for (std::size_t i = 0; i + 2 < p.count; ++i) {
-    slope = std::max(slope, (p.gray[i + 2] - p.gray[i]) / (2.0 * kStepPx));
-  }
-  return slope;
-}
-
-Profile read_profile(const depth::DepthImage& frame, const Eigen::Vector2d& rim,
-                     const Eigen::Vector2d& normal, double reach_px, double sign) noexcept {
-  Profile p;
-  p.first_px = -reach_px;
-  const auto samples = static_cast<std::size_t>(2.0 * reach_px / kStepPx) + 1;
-  for (std::size_t i = 0; i < std::min(samples, kMaxSamples); ++i) {
-    const Eigen::Vector2d q = rim + normal * (p.first_px + static_cast<double>(i) * kStepPx);
-    if (!inside_image(frame, q.x(), q.y())) {
-      return {};
-    }
-    p.gray[p.count++] = sign * gray_between(frame, q.x(), q.y());
-  }
-  return p;
-}
-
-std::optional<EdgePoint> find_edge(const depth::DepthImage& frame, const Eigen::Vector2d& rim,
-                                   const Eigen::Vector2d& normal, double reach_px,
-                                   double sign) noexcept {
-  const Profile p = read_profile(frame, rim, normal, reach_px, sign);
-  if (p.count < 5) {
-    return std::nullopt;
-  }
-  const double low = (p.gray[0] + p.gray[1]) / 2.0;
-  const double high = (p.gray[p.count - 1] + p.gray[p.count - 2]) / 2.0;
-  constexpr double kMinStep = 8.0;
-  if (high - low < kMinStep) {
-    return std::nullopt;
-  }
-  const Eigen::Vector2d q = rim + normal * equal_area_edge(p, low, high);
-  return EdgePoint{q.x(), q.y(), (high - low) / std::max(steepest(p), 1e-6), high - low};
-}
 
 Edges find_edges(const depth::DepthImage& frame, const geometry::Ellipse& e, double sign) noexcept {
   Edges edges;
   const double reach = std::clamp(0.8 * e.b, 2.0, 5.0);
+  const Shading shading = shading_about(frame, e, reach);
   const Eigen::Vector2d long_axis(std::cos(e.angle_rad), std::sin(e.angle_rad));
   const Eigen::Vector2d short_axis(-long_axis.y(), long_axis.x());
-  for (std::size_t k = 0; k < kProfiles; ++k) {
-    const double t = 2.0 * std::numbers::pi * static_cast<double>(k) / kProfiles;
+  for (std::size_t k = 0; k < EllipseEdge::kProfiles; ++k) {
+    const double t = 2.0 * std::numbers::pi * static_cast<double>(k) / EllipseEdge::kProfiles;
     const Eigen::Vector2d rim = Eigen::Vector2d(e.u, e.v) + long_axis * (e.a * std::cos(t)) +
                                 short_axis * (e.b * std::sin(t));
     const Eigen::Vector2d normal =
         (long_axis * (std::cos(t) / e.a) + short_axis * (std::sin(t) / e.b)).normalized();
-    if (const auto edge = find_edge(frame, rim, normal, reach, sign)) {
+    if (const auto edge = find_edge(frame, rim, normal, reach, shading, sign)) {
       edges.points[edges.count++] = *edge;
     }
   }
@@ -167,8 +88,8 @@ ConicFit fit_conic(const Edges& edges, const geometry::Ellipse& frame) noexcept 
     Eigen::Matrix<double, 5, 5> h = Eigen::Matrix<double, 5, 5>::Zero();
     Conic g = Conic::Zero();
     for (std::size_t i = 0; i < edges.count; ++i) {
-      const double x = (edges.points[i].u - frame.u) / frame.a;
-      const double y = (edges.points[i].v - frame.v) / frame.a;
+      const double x = (edges.points[i].p_px.x() - frame.u) / frame.a;
+      const double y = (edges.points[i].p_px.y() - frame.v) / frame.a;
       const double s = sampson(q, x, y) / gate;
       const double slope =
           std::hypot(2.0 * q(0) * x + q(1) * y + q(3), q(1) * x + 2.0 * q(2) * y + q(4));
@@ -181,8 +102,8 @@ ConicFit fit_conic(const Edges& edges, const geometry::Ellipse& frame) noexcept 
     double squares = 0.0;
     double weight = 1e-12;
     for (std::size_t i = 0; i < edges.count; ++i) {
-      const double d = sampson(q, (edges.points[i].u - frame.u) / frame.a,
-                               (edges.points[i].v - frame.v) / frame.a);
+      const double d = sampson(q, (edges.points[i].p_px.x() - frame.u) / frame.a,
+                               (edges.points[i].p_px.y() - frame.v) / frame.a);
       const double w = std::abs(d) < gate ? 1.0 : 0.0;
       squares += w * d * d;
       weight += w;
@@ -191,6 +112,24 @@ ConicFit fit_conic(const Edges& edges, const geometry::Ellipse& frame) noexcept 
     gate = std::max(4.0 * rms, 0.1 / frame.a);
   }
   return {q.allFinite() ? to_ellipse(q, frame) : std::nullopt, rms * frame.a};
+}
+
+// The edges that lie on the ellipse.
+void keep_rim(const Edges& edges, EllipseEdge& out) noexcept {
+  const double gate = std::max(4.0 * out.rms_px, 0.1);
+  std::array<double, EllipseEdge::kProfiles> residuals{};
+  out.num_rim = 0;
+  for (std::size_t i = 0; i < edges.count; ++i) {
+    const Eigen::Vector2d& p = edges.points[i].p_px;
+    const Eigen::Vector2d from = p - Eigen::Vector2d(out.ellipse.u, out.ellipse.v);
+    const double relative = out.ellipse.relative_radius(p.x(), p.y());
+    const double off = (1.0 - 1.0 / relative) * from.norm();
+    if (std::abs(off) < gate) {
+      residuals[out.num_rim] = off;
+      out.rim_px[out.num_rim++] = p;
+    }
+  }
+  out.sigma_px = scatter_of(std::span(residuals).first(out.num_rim)).sigma_of_mean();
 }
 
 double median_width(Edges& edges) noexcept {
@@ -235,6 +174,29 @@ double flatness(const depth::DepthImage& frame, const geometry::Ellipse& e, doub
 
 }  // namespace
 
+double RimScatter::sigma_of_mean() const noexcept { return rms / std::sqrt(independent); }
+
+RimScatter scatter_of(std::span<const double> residuals) noexcept {
+  constexpr double kMinIndependent = 2.0;
+  constexpr double kMaxIndependent = 12.0;  // Neighbouring profiles share pixels.
+  RimScatter out;
+  const std::size_t n = residuals.size();
+  double squares = 0.0;
+  double products = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    squares += residuals[i] * residuals[i];
+    products += residuals[i] * residuals[(i + 1) % n];
+  }
+  if (!(squares > 0.0)) {
+    return out;
+  }
+  out.rms = std::sqrt(squares / static_cast<double>(n));
+  const double like = std::clamp(products / squares, 0.0, 0.999);
+  out.independent = std::clamp(static_cast<double>(n) * (1.0 - like) / (1.0 + like),
+                               kMinIndependent, kMaxIndependent);
+  return out;
+}
+
 EllipseEdge refine_ellipse(const depth::DepthImage& frame, const geometry::Ellipse& start,
                            bool dark_inside) noexcept {
   EllipseEdge out;
@@ -242,8 +204,8 @@ EllipseEdge refine_ellipse(const depth::DepthImage& frame, const geometry::Ellip
   const double sign = dark_inside ? 1.0 : -1.0;
   for (int round = 0; round < kRounds; ++round) {
     Edges edges = find_edges(frame, out.ellipse, sign);
-    out.rim_seen = static_cast<double>(edges.count) / kProfiles;
-    if (edges.count < kProfiles / 2) {
+    out.rim_seen = static_cast<double>(edges.count) / EllipseEdge::kProfiles;
+    if (edges.count < EllipseEdge::kProfiles / 2) {
       return out;
     }
     const ConicFit fit = fit_conic(edges, out.ellipse);
@@ -255,6 +217,7 @@ EllipseEdge refine_ellipse(const depth::DepthImage& frame, const geometry::Ellip
     out.rms_px = fit.rms_px;
     out.contrast = mean_step(edges);
     out.unevenness = unevenness(edges, out.contrast);
+    keep_rim(edges, out);
     out.edge_width_px = median_width(edges);
   }
   out.flatness = flatness(frame, out.ellipse, out.contrast);

@@ -51,11 +51,7 @@ bool edge_is_a_rim(const EllipseEdge& edge, const MarkerFinder::Config& c) noexc
          edge.ellipse.b >= c.min_half_axis_px;
 }
 
-double sigma_of_centre_px(const EllipseEdge& edge) noexcept {
-  constexpr double kFloorPx = 0.01;           // What sampling and lens leave, whatever the noise.
-  constexpr double kIndependentEdges = 12.0;  // Neighbouring profiles share pixels.
-  return std::hypot(kFloorPx, edge.rms_px / std::sqrt(kIndependentEdges));
-}
+constexpr double kFloorPx = 0.01;  // What sampling and lens leave, whatever the noise.
 
 void set_space(const depth::DepthImage& frame, const SurfaceDisc& disc, double sigma_depth_mm,
                Marker& m) noexcept {
@@ -63,6 +59,8 @@ void set_space(const depth::DepthImage& frame, const SurfaceDisc& disc, double s
   m.has_depth = true;
   m.p_camera = disc.centre;
   m.radius_mm = disc.radius_mm;
+  const double px_per_mm = k.fx / disc.centre.z() * std::sqrt(m.ellipse.b / m.ellipse.a);
+  m.sigma_px = std::hypot(kFloorPx, disc.sigma_mm * px_per_mm);
   m.u = k.fx * disc.centre.x() / disc.centre.z() + k.cx;
   m.v = k.fy * disc.centre.y() / disc.centre.z() + k.cy;
   // A pixel's error slides the point along the surface, an error of depth along the ray.
@@ -132,17 +130,17 @@ void MarkerFinder::examine(const depth::DepthImage& frame, const Blob& blob, Rep
   marker.u = edge.ellipse.u;
   marker.v = edge.ellipse.v;
   marker.polarity = blob.polarity;
-  marker.sigma_px = sigma_of_centre_px(edge);
-  if (!frame.depth.empty() && !lay(frame, marker, report)) {
+  marker.sigma_px = std::hypot(kFloorPx, edge.sigma_px);
+  if (!frame.depth.empty() && !lay(frame, edge, marker, report)) {
     return;
   }
   ++report.found;
   report.not_stored += out.append(marker) ? 0U : 1U;
 }
 
-bool MarkerFinder::lay(const depth::DepthImage& frame, Marker& marker,
+bool MarkerFinder::lay(const depth::DepthImage& frame, const EllipseEdge& edge, Marker& marker,
                        Report& report) const noexcept {
-  const SurfaceDisc disc = lay_on_surface(frame, marker.ellipse, config_.max_hole_depth_mm);
+  const SurfaceDisc disc = lay_on_surface(frame, edge, config_.max_hole_depth_mm);
   if (disc.state != DiscState::kDisc) {
     ++(disc.state == DiscState::kHole ? report.rejected_hole : report.rejected_surface);
     return false;

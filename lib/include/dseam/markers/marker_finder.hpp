@@ -14,6 +14,8 @@
 
 namespace dseam::markers {
 
+struct EllipseEdge;
+
 /// Finds round marker discs in the gray image, and their centres in space from the depth around.
 ///
 /// Frame:   camera.
@@ -64,7 +66,8 @@ class MarkerFinder {
       : config_(config), width_(width), blobs_(blobs) {}
   void examine(const depth::DepthImage& frame, const Blob& blob, Report& report,
                Buffer<Marker>& out) const noexcept;
-  bool lay(const depth::DepthImage& frame, Marker& marker, Report& report) const noexcept;
+  bool lay(const depth::DepthImage& frame, const EllipseEdge& edge, Marker& marker,
+           Report& report) const noexcept;
 
   Config config_;
   std::uint32_t width_;
