@@ -116,7 +116,7 @@ void Adjustment::add_reports() noexcept {
                        6 * v, system);
     }
     if (!anchored) {
-      constexpr double kHeld = 1e8;
+      constexpr double kHeld = 1e13;  // All that pulls at a view together comes to 1e8.
       system.add(6 * v, 6 * v, Matrix6(kHeld * Matrix6::Identity()));
       anchored = true;
     }
