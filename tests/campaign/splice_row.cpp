@@ -93,10 +93,12 @@ double share(int part, int whole) { return whole > 0 ? static_cast<double>(part)
 
 std::span<const SpliceRow> splice_rows() noexcept { return kRows; }
 
-SpliceOutcome splice_seed(const SpliceRow& row, std::uint64_t seed) {
-  const hal::sim::CellConfig config = cell_of(row, seed);
+SpliceOutcome splice_seed(const SpliceRow& row, std::uint64_t seed, std::uint32_t shrink) {
+  hal::sim::CellConfig config = cell_of(row, seed);
+  config.scanner.width /= shrink;
+  config.scanner.height /= shrink;
   const auto cell = hal::sim::Cell::make(config);
-  const pipeline::SpliceChain::Capacity capacity;
+  const pipeline::SpliceChain::Capacity capacity{config.scanner.width, config.scanner.height};
   ArenaOwner memory(pipeline::SpliceChain::bytes(capacity));
   auto chain = pipeline::SpliceChain::make({}, capacity, memory.arena());
   hal::sim::Rendering rendering;

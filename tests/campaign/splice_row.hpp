@@ -30,7 +30,9 @@ struct SpliceOutcome {
   double base_nees = 0.0;
   bool has_base = false;
 };
-[[nodiscard]] SpliceOutcome splice_seed(const SpliceRow& row, std::uint64_t seed);
+/// `shrink` divides the frame's width and height.
+[[nodiscard]] SpliceOutcome splice_seed(const SpliceRow& row, std::uint64_t seed,
+                                        std::uint32_t shrink);
 
 /// All seeds of a row.
 struct SpliceTable {

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::size_t kMaxSamples = 33;
 constexpr double kStepPx = 0.5;
-constexpr double kRimPx = 1.8;  // Pixels nearer to the rim show both sides of it.
+// Pixels nearer to the rim show both sides of it. What blur leaves of it beyond is alike all round.
+constexpr double kRimPx = 1.0;
 
 // One gray profile across the rim, from inside to outside, turned so that it rises.
 struct Profile {
@@ -81,7 +82,7 @@ struct PlaneSums {
   }
   // Its slope, when gray lies on a plane: structure beside the disc is not shading.
   [[nodiscard]] Eigen::Vector2d slope() const noexcept {
-    constexpr double kMinPixels = 12.0;
+    constexpr double kMinPixels = 8.0;
     constexpr double kMaxRmsGray = 6.0;
     if (count < kMinPixels) {
       return Eigen::Vector2d::Zero();

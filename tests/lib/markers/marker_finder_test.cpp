@@ -93,8 +93,9 @@ std::vector<BiasCase> bias_cases() {
   sloping.cylinder_radius_mm = 50.0;
   sloping.along = {0.0, 1.0, -1.0};
   add("with_a_soft_edge").soft_px = 1.0;
-  DiscScene& half = add("in_half_the_pixels");
+  DiscScene& half = add("in_half_the_pixels_under_uneven_light");
   half.camera.fx = half.camera.fy = 1036.8;
+  half.shading_per_px = {0.0, 0.004};
   return cases;
 }
 

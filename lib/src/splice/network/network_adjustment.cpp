@@ -155,12 +155,13 @@ double Adjustment::step(double gate_mm) noexcept {
   return largest;
 }
 
-// What the sights say of their own errors counts for more than what was predicted of them.
+// Sights that contradict each other are worse than predicted; that they agree does not make them
+// better, since what they have in common cannot be seen in them.
 void Adjustment::settle_marker_variance() noexcept {
   constexpr double kMinFreedom = 12.0;
   if (markers.freedom >= kMinFreedom) {
     const double found = marker_variance_factor * markers.chi_squared / markers.freedom;
-    marker_variance_factor = std::clamp(found, 0.25, 1e4);
+    marker_variance_factor = std::clamp(found, 1.0, 1e4);
   }
 }
 

@@ -78,8 +78,10 @@ void Adjustment::fill_views() noexcept {
     SplicedView& view = out[v];
     view.T_base_camera = views[v].T_base_camera;
     view.num_markers = markers.count[v];
-    view.marker_rms_mm = std::sqrt(markers.squares[v] / std::max<std::uint32_t>(1, markers.count[v]));
-    view.surface_rms_mm = std::sqrt(surface.squares[v] / std::max<std::uint32_t>(1, surface.near[v]));
+    view.marker_rms_mm =
+        std::sqrt(markers.squares[v] / std::max<std::uint32_t>(1, markers.count[v]));
+    view.surface_rms_mm =
+        std::sqrt(surface.squares[v] / std::max<std::uint32_t>(1, surface.near[v]));
     if (views[v].used && inputs[v].reported.known) {
       view.reported_pose_rejected =
           reported_residual(view.T_base_camera, inputs[v].reported.T_base_camera, config)
