@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "dseam/base/random.hpp"
-#include "dseam/cloud/frame_fuser.hpp"
-#include "dseam/cloud/voxel_map.hpp"
 #include "dseam/hal/sim/cell.hpp"
 #include "dseam/pipeline/weld_pipeline.hpp"
 #include "support/arena_owner.hpp"
+#include "support/fused_scan.hpp"
 #include "support/seam_accuracy.hpp"
 
 namespace dseam::campaign {
@@ -21,29 +20,6 @@ namespace {
 using Eigen::Vector3d;
 using hal::sim::Cell;
 using hal::sim::TruthCurve;
-
-constexpr std::size_t kMaxCells = 262144;
-constexpr float kReachMm = 130.0F;  // Of the fused cloud, from the part's origin.
-
-struct Scan {
-  std::vector<hal::sim::Rendering> renderings;
-  std::vector<depth::DepthImage> frames;
-  std::vector<splice::SplicedView> views;  // With their true poses.
-};
-
-Scan scan_of(const Cell& cell) {
-  Scan scan;
-  scan.renderings.resize(cell.views().size());
-  for (std::size_t i = 0; i < cell.views().size(); ++i) {
-    cell.scan(i, scan.renderings[i]);
-    scan.frames.push_back(hal::sim::image_of(scan.renderings[i], cell.config().scanner));
-    splice::SplicedView view;
-    view.state = splice::ViewState::kUsed;
-    view.T_base_camera = cell.views()[i].T_base_camera;
-    scan.views.push_back(view);
-  }
-  return scan;
-}
 
 void score(const TruthCurve& truth, std::span<const seam::SeamPoint> points,
            const geometry::RigidTransform& correction, std::uint64_t seed, Outcome& out) {
@@ -64,29 +40,15 @@ void score(const TruthCurve& truth, std::span<const seam::SeamPoint> points,
 }
 
 /// Fuses the views with their true poses and runs the seam chain alone.
-void find_with_true_poses(const Cell& cell, const Scan& scan, std::uint64_t seed, Outcome& out) {
-  test::ArenaOwner map_owner(cloud::VoxelMap::bytes(kMaxCells) +
-                             cloud::FrameFuser::bytes(cell.config().scanner.width));
-  auto map = cloud::VoxelMap::make({.cell_mm = 1.0F}, kMaxCells, map_owner.arena()).value();
-  auto fuser = cloud::FrameFuser::make({}, cell.config().scanner.width, map_owner.arena()).value();
-  const Eigen::Vector3f centre = cell.config().T_base_part.translation_mm.cast<float>();
-  cloud::OrientedBox box;
-  box.low_mm = {centre.x() - kReachMm, centre.y() - kReachMm, centre.z() - kReachMm};
-  box.high_mm = {centre.x() + kReachMm, centre.y() + kReachMm, centre.z() + kReachMm};
-  fuser.set_box(box);
-  for (std::size_t i = 0; i < scan.frames.size(); ++i) {
-    (void)fuser.run({scan.frames[i], scan.views[i].T_base_camera, i, {}}, map);
-  }
+void find_with_true_poses(const Cell& cell, const test::TrueScan& scan, std::uint64_t seed,
+                          Outcome& out) {
+  test::FusedScan fused(cell, scan);
   test::ArenaOwner owner(pipeline::SeamChain::bytes({}));
   pipeline::SeamChain chain = pipeline::SeamChain::make({}, {}, owner.arena()).value();
   std::vector<seam::SeamPoint> storage(4096);
   Buffer<seam::SeamPoint> points{std::span<seam::SeamPoint>(storage)};
-  pipeline::SeamInput in;
-  in.cloud_base = map.view();
-  in.frames = scan.frames;
-  in.views = scan.views;
   const auto start = std::chrono::steady_clock::now();
-  out.report = chain.run(in, points);
+  out.report = chain.run(fused.input(), points);
   out.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   const auto truth = cell.seam();
@@ -96,15 +58,16 @@ void find_with_true_poses(const Cell& cell, const Scan& scan, std::uint64_t seed
 }
 
 /// The whole pipeline, from the frames and the poses that the robot reports.
-void find_with_spliced_poses(const Cell& cell, const Scan& scan, std::uint64_t seed, Outcome& out) {
+void find_with_spliced_poses(const Cell& cell, const test::TrueScan& scan, std::uint64_t seed,
+                             Outcome& out) {
   pipeline::WeldPipeline::Capacity capacity;
   capacity.views.width = cell.config().scanner.width;
   capacity.views.height = cell.config().scanner.height;
   test::ArenaOwner owner(pipeline::WeldPipeline::bytes(capacity));
   auto* pipeline = pipeline::WeldPipeline::make({}, capacity, owner.arena()).value();
   const auto start = std::chrono::steady_clock::now();
-  for (std::size_t i = 0; i < scan.frames.size(); ++i) {
-    (void)pipeline->add(scan.frames[i], {true, cell.views()[i].T_base_camera_reported}, nullptr);
+  for (std::size_t i = 0; i < scan.frames().size(); ++i) {
+    (void)pipeline->add(scan.frames()[i], {true, cell.views()[i].T_base_camera_reported}, nullptr);
   }
   out.report = pipeline->finish(nullptr).seam;
   out.milliseconds =
@@ -129,7 +92,7 @@ Outcome run(const Row& row, std::uint64_t seed, std::uint32_t shrink) {
   config.scanner.width /= shrink;
   config.scanner.height /= shrink;
   const Cell cell = Cell::make(config).value();
-  const Scan scan = scan_of(cell);
+  const test::TrueScan scan(cell);
   Outcome out;
   out.true_gap_mm = config.joint.gap_mm;
   if (row.poses == Poses::kTrue) {

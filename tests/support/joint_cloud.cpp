@@ -120,7 +120,7 @@ void JointCloud::add_nozzle() {
       const double radius = nozzle_radius(phi, along) + noise(random);
       const Vector3d p =
           origin_ + along * axis_ + radius * (std::cos(phi) * u_ + std::sin(phi) * v);
-      if (shell_height(p) > std::max(config_.dead_band_mm, 0.0) &&
+      if (shell_height(p) > std::max(config_.dead_band_mm, config_.raised_mm) &&
           p.z() > -0.9 * config_.shell_radius_mm && !unseen(p)) {
         add(p);
       }
@@ -128,27 +128,30 @@ void JointCloud::add_nozzle() {
   }
 }
 
-std::optional<Vector3d> JointCloud::curve_at(double phi_rad, double offset_mm) const {
+std::optional<Vector3d> JointCloud::curve_at(double phi_rad, double offset_mm,
+                                             double height_mm) const {
   const Vector3d outward = std::cos(phi_rad) * u_ + std::sin(phi_rad) * axis_.cross(u_);
   const auto at = [&](double along) -> Vector3d {
     return origin_ + along * axis_ + (nozzle_radius(phi_rad, along) + offset_mm) * outward;
   };
   double low = -config_.shell_radius_mm;
   double high = config_.nozzle_height_mm;
-  if (shell_height(at(low)) > 0.0 || shell_height(at(high)) < 0.0) {
+  if (shell_height(at(low)) > height_mm || shell_height(at(high)) < height_mm) {
     return std::nullopt;
   }
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
-    (shell_height(at(middle)) > 0.0 ? high : low) = middle;
+    (shell_height(at(middle)) > height_mm ? high : low) = middle;
   }
   return at(high);
 }
 
-std::vector<Vector3d> JointCloud::curve(std::size_t count, double offset_mm) const {
+std::vector<Vector3d> JointCloud::curve(std::size_t count, double offset_mm,
+                                        double height_mm) const {
   std::vector<Vector3d> points;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto p = curve_at(kTurn * static_cast<double>(i) / static_cast<double>(count), offset_mm);
+    const auto p =
+        curve_at(kTurn * static_cast<double>(i) / static_cast<double>(count), offset_mm, height_mm);
     if (p) {
       points.push_back(*p);
     }

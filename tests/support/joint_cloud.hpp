@@ -27,6 +27,7 @@ struct JointCloudConfig {
   double axis_angle_rad = std::numbers::pi / 2.0;
   double eccentricity_mm = 0.0;
   double gap_mm = 0.0;            ///< Of a hole in the shell round the nozzle.
+  double raised_mm = 0.0;         ///< The nozzle's end above the shell, which goes on under it.
   double dead_band_mm = 0.0;      ///< Nothing within this of the root.
   double unseen_start_rad = 0.0;  ///< Angles about the nozzle without points.
   double unseen_width_rad = 0.0;
@@ -47,10 +48,13 @@ class JointCloud {
   /// The same cloud in another frame and unit.
   void transform(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& shift, double scale);
 
-  /// The true shell edge (offset = gap) or root (offset = 0) at an angle about the nozzle.
-  [[nodiscard]] std::optional<Eigen::Vector3d> curve_at(double phi_rad, double offset_mm) const;
+  /// The true shell edge (offset = gap), root (both 0) or nozzle edge (height = raised) at an angle
+  /// about the nozzle.
+  [[nodiscard]] std::optional<Eigen::Vector3d> curve_at(double phi_rad, double offset_mm,
+                                                        double height_mm = 0.0) const;
   /// The same curve as a closed polygon of `count` points.
-  [[nodiscard]] std::vector<Eigen::Vector3d> curve(std::size_t count, double offset_mm) const;
+  [[nodiscard]] std::vector<Eigen::Vector3d> curve(std::size_t count, double offset_mm,
+                                                   double height_mm = 0.0) const;
 
  private:
   [[nodiscard]] double shell_height(const Eigen::Vector3d& p) const;

@@ -32,6 +32,10 @@ Json joint_json(const seam::JointReport& joint) {
           {"has_gap", joint.has_gap},
           {"mean_gap_mm", joint.mean_gap_mm},
           {"max_gap_mm", joint.max_gap_mm},
+          {"hidden_gap_mm", joint.hidden_gap_mm},
+          {"has_nozzle_edge", joint.has_nozzle_edge},
+          {"mean_mismatch_mm", joint.mean_mismatch_mm},
+          {"max_mismatch_mm", joint.max_mismatch_mm},
           {"shell_points", joint.num_shell_points},
           {"nozzle_points", joint.num_nozzle_points}};
 }
@@ -96,6 +100,17 @@ Json sigma_json(const seam::SeamView& seam_base) {
   return {{"lateral_mm", lateral}, {"normal_mm", normal}};
 }
 
+/// How far the two edges that face each other are apart, in the order of seam.csv.
+Json opening_json(const seam::SeamView& seam_base) {
+  Json gap = Json::array();
+  Json mismatch = Json::array();
+  for (const seam::SeamPoint& point : seam_base.points) {
+    gap.push_back(point.gap_mm);
+    mismatch.push_back(point.mismatch_mm);
+  }
+  return {{"gap_mm", gap}, {"mismatch_mm", mismatch}};
+}
+
 Json seam_json(const JobReport& job) {
   constexpr const char* kReferences[] = {"shell_edge", "root", "gap_middle", "nozzle_edge"};
   const seam::SeamReport& report = job.seam_report;
@@ -112,6 +127,7 @@ Json seam_json(const JobReport& job) {
           {"holes", holes_json(report)},
           {"joint", joint_json(report.joint)},
           {"rings", rings_json(report)},
+          {"opening", opening_json(job.seam_base)},
           {"sigma", sigma_json(job.seam_base)}};
 }
 

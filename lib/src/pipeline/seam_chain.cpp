@@ -111,10 +111,10 @@ Result<SeamChain> SeamChain::make(const Config& config, const Capacity& capacity
 
 seam::SeamReport SeamChain::run(const SeamInput& in, Buffer<seam::SeamPoint>& out) noexcept {
   seam::SeamReport report;
-  report.reference = config_.reference;
+  report.reference = in.reference.value_or(config_.reference);
   out.clear();
   seam::Joint joint;
-  if (find_joint(in, report, joint) && fit_joint(in, joint, report) && find_edge(in, report)) {
+  if (find_joint(in, report, joint) && fit_joint(in, joint, report) && find_edges(in, report)) {
     build_curve(in, report, out);
   }
   return report;
@@ -166,39 +166,64 @@ bool SeamChain::fit_joint(const SeamInput& in, const seam::Joint& joint,
   return true;
 }
 
-bool SeamChain::find_edge(const SeamInput& in, seam::SeamReport& report) noexcept {
-  seam::EdgeCurve& edge = work_[0].edge;
+// False where there is no room for all that was seen.
+bool SeamChain::scan_edge(const SeamInput& in, seam::EndingSurface::Which which,
+                          seam::SeamReport& report) noexcept {
+  const seam::EndingSurface surface(fit_, which);
   if (in.frames.empty()) {
-    edges_.run(fit_, report.spacing_mm);
+    edges_.run(surface, report.spacing_mm);
   } else {
-    edges_.run(in.frames, in.views, fit_, report.noise_mm);
+    edges_.run(in.frames, in.views, surface, report.noise_mm);
   }
-  if (edges_.full()) {
-    report.refusal = Refusal::kFull;
+  report.joint.num_edge_intervals += static_cast<std::uint32_t>(edges_.intervals().size());
+  return !edges_.full();
+}
+
+// A nozzle that goes through the shell's hole does not end at the joint: the second search is for
+// one that was set on.
+bool SeamChain::find_edges(const SeamInput& in, seam::SeamReport& report) noexcept {
+  using Which = seam::EndingSurface::Which;
+  seam::EdgeCurve& shell = work_[0].shell_edge;
+  seam::EdgeCurve& nozzle = work_[0].nozzle_edge;
+  found_ = {};
+  report.refusal = Refusal::kFull;
+  if (!scan_edge(in, Which::kShell, report)) {
     return false;
   }
-  report.joint.num_edge_intervals = static_cast<std::uint32_t>(edges_.intervals().size());
-  const bool has_gap = edge.fit(edges_.intervals()) && seam::describe_gap(edge, report.joint);
-  edge_ = has_gap ? &edge : nullptr;
-  const bool has_reference = config_.reference == seam::ReferenceCurve::kShellEdge ||
-                             config_.reference == seam::ReferenceCurve::kRoot ||
-                             (config_.reference == seam::ReferenceCurve::kGapMiddle && has_gap);
-  report.refusal = has_reference ? Refusal::kNone : Refusal::kNoSuchReference;
-  return has_reference;
+  if (shell.fit(edges_.intervals()) && seam::describe_gap(shell, report.joint)) {
+    found_.shell = &shell;
+  } else if (!scan_edge(in, Which::kNozzle, report)) {
+    return false;
+  } else if (nozzle.fit(edges_.intervals()) && seam::describe_mismatch(nozzle, report.joint)) {
+    found_.nozzle = &nozzle;
+  }
+  report.refusal = has(report.reference) ? Refusal::kNone : Refusal::kNoSuchReference;
+  return report.refusal == Refusal::kNone;
+}
+
+bool SeamChain::has(seam::ReferenceCurve reference) const noexcept {
+  switch (reference) {
+    case seam::ReferenceCurve::kGapMiddle:
+      return found_.shell != nullptr || found_.nozzle != nullptr;
+    case seam::ReferenceCurve::kNozzleEdge:
+      return found_.nozzle != nullptr;
+    default:
+      return true;
+  }
 }
 
 void SeamChain::build_curve(const SeamInput& in, seam::SeamReport& report,
                             Buffer<seam::SeamPoint>& out) noexcept {
   Workspace& work = work_[0];
-  work.coverage.run(fit_, edge_, report.spacing_mm);
+  work.coverage.run(fit_, found_, report.spacing_mm);
   const double pose_sigma_mm = pose_sigma_of(in.views, fit_.joint().nozzle.point);
   const seam::ErrorSources errors{std::hypot(pose_sigma_mm, config_.scanner_sigma_mm),
                                   config_.hand_eye_sigma_mm, work.coverage.hidden_gap_mm()};
   report.joint.hidden_gap_mm = errors.hidden_gap_mm;
   const seam::CurveBuilder::Report built =
-      work.builder.run({config_.reference, config_.point_spacing_mm, config_.start_angle_rad,
+      work.builder.run({report.reference, config_.point_spacing_mm, config_.start_angle_rad,
                         config_.counter_clockwise},
-                       fit_, edge_, work.coverage, errors, out);
+                       fit_, found_, work.coverage, errors, out);
   if (!built.placed) {
     report.refusal = built.full ? Refusal::kFull : Refusal::kNoRing;
     return;

@@ -187,6 +187,7 @@ bool WeldPipeline::find_coarsely(WeldReport& report, StageObserver* observer) no
     SeamInput input = seam_input();
     input.frames = {};  // The coarse seam needs no edges.
     input.views = {};
+    input.reference = seam::ReferenceCurve::kRoot;
     report.seam = seam_->run(input, seam_points_);
     tell(observer, Stage::kCoarseSeam);
     const std::size_t finer = kFinerVoxels * map_->size();

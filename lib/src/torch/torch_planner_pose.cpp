@@ -91,7 +91,7 @@ Weldable TorchPlanner::judge(const seam::SeamPoint& nearest, const TorchPoint& p
   if (nearest.confidence < config_.min_confidence) {
     return Weldable::kLowConfidence;
   }
-  if (!(nearest.gap_mm <= config_.max_gap_mm)) {
+  if (!(std::max(nearest.gap_mm, nearest.mismatch_mm) <= config_.max_gap_mm)) {
     return Weldable::kGap;
   }
   if (!(point.clearance_mm >= config_.min_clearance_mm)) {

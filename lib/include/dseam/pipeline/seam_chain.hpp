@@ -39,6 +39,7 @@ struct SeamInput {
   std::span<const splice::SplicedView> views{};
   std::optional<RegionOfInterest> region{};
   std::optional<double> expected_radius_mm{};
+  std::optional<seam::ReferenceCurve> reference{};  ///< In place of the configured one.
 };
 
 /// From a fused cloud to the one closed seam in it, or to the reason why there is none.
@@ -76,14 +77,18 @@ class SeamChain {
   struct Workspace {
     seam::RingCoverage coverage;
     seam::CurveBuilder builder;
-    seam::EdgeCurve edge;
+    seam::EdgeCurve shell_edge;
+    seam::EdgeCurve nozzle_edge;
   };
 
   SeamChain(const Config& config, const Capacity& capacity, Arena& arena) noexcept;
 
   bool find_joint(const SeamInput& in, seam::SeamReport& report, seam::Joint& joint) noexcept;
   bool fit_joint(const SeamInput& in, const seam::Joint& joint, seam::SeamReport& report) noexcept;
-  bool find_edge(const SeamInput& in, seam::SeamReport& report) noexcept;
+  bool find_edges(const SeamInput& in, seam::SeamReport& report) noexcept;
+  bool scan_edge(const SeamInput& in, seam::EndingSurface::Which which,
+                 seam::SeamReport& report) noexcept;
+  [[nodiscard]] bool has(seam::ReferenceCurve reference) const noexcept;
   void build_curve(const SeamInput& in, seam::SeamReport& report,
                    Buffer<seam::SeamPoint>& out) noexcept;
 
@@ -95,7 +100,7 @@ class SeamChain {
   seam::EdgeScanner edges_;
   std::span<Workspace> work_;
   std::span<float> scratch_;
-  const seam::EdgeCurve* edge_ = nullptr;
+  seam::JointEdges found_;
   double tolerance_mm_ = 1.0;
   double cell_mm_ = 4.0;
 };

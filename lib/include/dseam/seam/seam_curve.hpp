@@ -33,7 +33,8 @@ struct SeamPoint {
   double dihedral_rad = 0.0;      ///< pi minus the angle between the normals, on the weld side.
   double sigma_lateral_mm = 0.0;  ///< Along the shell, across the seam; one standard deviation.
   double sigma_normal_mm = 0.0;   ///< Along the shell's normal.
-  double gap_mm = 0.0;            ///< Between shell edge and nozzle; 0 where they touch.
+  double gap_mm = 0.0;            ///< Along the shell from its edge to the nozzle; 0: they touch.
+  double mismatch_mm = 0.0;       ///< Of the nozzle's edge above the shell; 0 where it has none.
   Confidence confidence = Confidence::kNone;
   Source source = Source::kInterpolated;
 };

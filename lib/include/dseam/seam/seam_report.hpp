@@ -101,6 +101,9 @@ struct JointReport {
   double hidden_gap_mm = 0.0;  ///< It was not, and a gap of up to this is not excluded.
   double mean_gap_mm = 0.0;
   double max_gap_mm = 0.0;
+  bool has_nozzle_edge = false;  ///< The nozzle's end was seen to stand off the shell.
+  double mean_mismatch_mm = 0.0;
+  double max_mismatch_mm = 0.0;
   std::uint32_t num_shell_points = 0;
   std::uint32_t num_nozzle_points = 0;
   std::uint32_t num_edge_intervals = 0;

@@ -35,25 +35,28 @@ double RingCoverage::median_of(const Distances& nearest) noexcept {
   return std::max(0.0, double{*middle});
 }
 
-void RingCoverage::run(const JointFit& fit, const EdgeCurve* edge, double spacing_mm) noexcept {
+// How near to where it ends a surface was seen, bin by bin.
+void RingCoverage::collect(const JointFit::Side& side, const EdgeCurve* edge,
+                           Distances& nearest) noexcept {
+  nearest.fill(kNothing);
+  for (const NearPoint& q : side.points.view()) {
+    const double start = edge == nullptr ? 0.0 : edge->at(q.phi_rad);
+    float& least = nearest[bin_of(q.phi_rad)];
+    least = q.trusted ? std::min(least, static_cast<float>(q.away_mm - start)) : least;
+  }
+}
+
+void RingCoverage::run(const JointFit& fit, const JointEdges& edges, double spacing_mm) noexcept {
   const double round_mm = kTurnRad * fit.joint().nozzle.radius_mm;
   num_bins_ = static_cast<std::size_t>(
       std::clamp(round_mm / (kSpacingsPerBin * spacing_mm), 48.0, double{kMaxBins}));
-  shell_.fill(kNothing);
-  nozzle_.fill(kNothing);
-  for (const NearPoint& q : fit.shell().points.view()) {
-    const double start = edge == nullptr ? 0.0 : edge->at(q.phi_rad);
-    float& nearest = shell_[bin_of(q.phi_rad)];
-    nearest = q.trusted ? std::min(nearest, static_cast<float>(q.away_mm - start)) : nearest;
-  }
-  for (const NearPoint& q : fit.nozzle().points.view()) {
-    float& nearest = nozzle_[bin_of(q.phi_rad)];
-    nearest = q.trusted ? std::min(nearest, static_cast<float>(q.away_mm)) : nearest;
-  }
+  collect(fit.shell(), edges.shell, shell_);
+  collect(fit.nozzle(), edges.nozzle, nozzle_);
   const double shell_mm = median_of(shell_);
   const double nozzle_mm = median_of(nozzle_);
   const double hidden_mm = shell_mm - nozzle_mm;
-  hidden_gap_mm_ = edge == nullptr && hidden_mm > kHiddenSpacings * spacing_mm ? shell_mm : 0.0;
+  hidden_gap_mm_ =
+      edges.shell == nullptr && hidden_mm > kHiddenSpacings * spacing_mm ? shell_mm : 0.0;
   const double shell_band = std::min(shell_mm, kMaxDeadBandMm);
   const double nozzle_band = std::min(nozzle_mm, kMaxDeadBandMm);
   for (std::size_t i = 0; i < num_bins_; ++i) {

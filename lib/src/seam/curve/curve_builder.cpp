@@ -21,12 +21,12 @@ constexpr double kStepRad = 2e-3;  // Of the central difference that gives the t
 }  // namespace
 
 CurveBuilder::Report CurveBuilder::run(const Config& config, const JointFit& fit,
-                                       const EdgeCurve* edge, const RingCoverage& coverage,
+                                       const JointEdges& edges, const RingCoverage& coverage,
                                        const ErrorSources& errors,
                                        Buffer<SeamPoint>& out) noexcept {
   config_ = config;
   fit_ = &fit;
-  edge_ = edge;
+  edges_ = edges;
   Report report;
   out.clear();
   if (!measure_length()) {
@@ -51,20 +51,41 @@ double CurveBuilder::angle_of(double turn_rad) const noexcept {
   return config_.start_angle_rad + (config_.counter_clockwise ? turn_rad : -turn_rad);
 }
 
-double CurveBuilder::offset_at(double phi_rad) const noexcept {
-  if (edge_ == nullptr || config_.reference == ReferenceCurve::kRoot) {
-    return 0.0;
+// The edge on which the reference curve rests; nullptr where it rests on the surfaces alone.
+const EdgeCurve* CurveBuilder::edge_in_use() const noexcept {
+  switch (config_.reference) {
+    case ReferenceCurve::kRoot:
+      return nullptr;
+    case ReferenceCurve::kShellEdge:
+      return edges_.shell;
+    case ReferenceCurve::kNozzleEdge:
+      return edges_.nozzle;
+    case ReferenceCurve::kGapMiddle:
+      return edges_.shell != nullptr ? edges_.shell : edges_.nozzle;
   }
-  return edge_->at(phi_rad) * (config_.reference == ReferenceCurve::kGapMiddle ? 0.5 : 1.0);
+  return nullptr;
 }
 
-// Newton on: on the shell, off the nozzle by the edge's offset, at the angle.
+double CurveBuilder::offset_at(double phi_rad) const noexcept {
+  const bool aside = edges_.shell != nullptr && edge_in_use() == edges_.shell;
+  const double share = config_.reference == ReferenceCurve::kGapMiddle ? 0.5 : 1.0;
+  return aside ? share * edges_.shell->at(phi_rad) : 0.0;
+}
+
+double CurveBuilder::height_at(double phi_rad) const noexcept {
+  const bool raised = edges_.nozzle != nullptr && edge_in_use() == edges_.nozzle;
+  const double share = config_.reference == ReferenceCurve::kGapMiddle ? 0.5 : 1.0;
+  return raised ? share * edges_.nozzle->at(phi_rad) : 0.0;
+}
+
+// Newton on: off shell and nozzle by what the edge is, at the angle.
 std::optional<Eigen::Vector3d> CurveBuilder::place(double phi_rad,
                                                    const Eigen::Vector3d& guess) const noexcept {
   const Joint& joint = fit_->joint();
   const NozzleFrame& frame = fit_->frame();
   const Eigen::Vector3d aside = std::cos(phi_rad) * frame.v - std::sin(phi_rad) * frame.u;
   const double offset = offset_at(phi_rad);
+  const double height = height_at(phi_rad);
   Eigen::Vector3d p = guess;
   double last = 0.0;
   for (int i = 0; i < kNewtonSteps; ++i) {
@@ -72,7 +93,7 @@ std::optional<Eigen::Vector3d> CurveBuilder::place(double phi_rad,
     slopes.row(0) = shell_normal(joint, p);
     slopes.row(1) = outward_normal(joint.nozzle, p);
     slopes.row(2) = aside;
-    const Eigen::Vector3d miss(fit_->above_shell(p), fit_->outside_nozzle(p) - offset,
+    const Eigen::Vector3d miss(fit_->above_shell(p) - height, fit_->outside_nozzle(p) - offset,
                                aside.dot(p - joint.nozzle.point));
     const Eigen::Vector3d step = slopes.inverse() * miss;
     if (!(step.norm() < joint.nozzle.radius_mm)) {
@@ -89,7 +110,7 @@ std::optional<Eigen::Vector3d> CurveBuilder::place(double phi_rad,
 
 // Whether the reference curve rests on edges seen nearby, where it needs them.
 bool CurveBuilder::held_at(double phi_rad) const noexcept {
-  return edge_ == nullptr || config_.reference == ReferenceCurve::kRoot || edge_->held_at(phi_rad);
+  return edge_in_use() == nullptr || edge_in_use()->held_at(phi_rad);
 }
 
 bool CurveBuilder::measure_length() noexcept {
@@ -140,7 +161,8 @@ SeamPoint CurveBuilder::point_at(double s_mm, const RingCoverage& coverage,
   point.n_nozzle = across_tangent(outward_normal(fit_->joint().nozzle, point.p_base));
   point.dihedral_rad =
       std::numbers::pi - std::acos(std::clamp(point.n_shell.dot(point.n_nozzle), -1.0, 1.0));
-  point.gap_mm = edge_ == nullptr ? 0.0 : std::max(0.0, edge_->at(phi));
+  point.gap_mm = edges_.shell == nullptr ? 0.0 : std::max(0.0, edges_.shell->at(phi));
+  point.mismatch_mm = edges_.nozzle == nullptr ? 0.0 : std::max(0.0, edges_.nozzle->at(phi));
   const bool measured = placed && coverage.measured_at(phi) && held_at(phi);
   point.source = measured ? Source::kMeasured : Source::kInterpolated;
   estimate_errors(point, phi, errors);
@@ -148,22 +170,25 @@ SeamPoint CurveBuilder::point_at(double s_mm, const RingCoverage& coverage,
   return point;
 }
 
-// A touching joint is displaced where its surfaces are; an edge is displaced along the shell by
-// its own error.
+// A touching joint is displaced where its surfaces are; the shell's edge is displaced along the
+// shell by its own error, the nozzle's edge along the nozzle.
 void CurveBuilder::estimate_errors(SeamPoint& point, double phi_rad,
                                    const ErrorSources& errors) const noexcept {
   const double common = errors.surface_sigma_mm * errors.surface_sigma_mm;
   const double hand_eye = errors.hand_eye_sigma_mm * errors.hand_eye_sigma_mm;
-  const double shell = fit_->shell_variance(point.p_base) + common;
+  const EdgeCurve* edge = edge_in_use();
+  const double height = edge != nullptr && edge == edges_.nozzle ? edge->variance_at(phi_rad) : 0.0;
+  const double shell = fit_->shell_variance(point.p_base) + common + height;
   const double nozzle = fit_->nozzle_variance(point.p_base) + common;
   const double cosine = point.n_shell.dot(point.n_nozzle);
   const double sine_squared = std::max(1e-3, 1.0 - cosine * cosine);
-  const bool on_edge = edge_ != nullptr && config_.reference != ReferenceCurve::kRoot;
+  const bool on_edge = edge != nullptr && edge == edges_.shell;
   const double root = (nozzle + cosine * cosine * shell) / sine_squared;
   // A gap of unknown width is as likely to be anything up to its bound.
-  const double hidden = config_.reference == ReferenceCurve::kRoot ? 0.0 : errors.hidden_gap_mm;
+  const bool by_surfaces = config_.reference == ReferenceCurve::kRoot || height > 0.0;
+  const double hidden = by_surfaces ? 0.0 : errors.hidden_gap_mm;
   const double lateral =
-      (on_edge ? edge_->variance_at(phi_rad) + common : root) + hidden * hidden / 12.0;
+      (on_edge ? edge->variance_at(phi_rad) + common : root) + hidden * hidden / 12.0;
   point.sigma_lateral_mm = std::sqrt(lateral + hand_eye);
   point.sigma_normal_mm = std::sqrt(shell + hand_eye);
 }

@@ -44,11 +44,28 @@ ResidualStats stats_of(const JointFit& fit, const JointFit::Side& side, bool she
   }
   if (stats.count > 0) {
     const auto place = scratch.begin() + static_cast<std::ptrdiff_t>(stats.count * 95 / 100);
-    std::nth_element(scratch.begin(), place, scratch.begin() + static_cast<std::ptrdiff_t>(stats.count));
+    std::nth_element(scratch.begin(), place,
+                     scratch.begin() + static_cast<std::ptrdiff_t>(stats.count));
     stats.p95_mm = double{*place};
     stats.rms_mm = std::sqrt(squares / stats.count);
   }
   return stats;
+}
+
+struct Width {
+  double mean_mm = 0.0;
+  double max_mm = 0.0;
+};
+
+Width width_of(const EdgeCurve& edge) noexcept {
+  constexpr int kAngles = 72;
+  Width width;
+  for (int i = 0; i < kAngles; ++i) {
+    const double at = edge.at(2.0 * std::numbers::pi * i / kAngles);
+    width.mean_mm += at / kAngles;
+    width.max_mm = std::max(width.max_mm, at);
+  }
+  return width;
 }
 
 }  // namespace
@@ -80,16 +97,19 @@ void describe_joint(const JointFit& fit, JointReport& report) noexcept {
 }
 
 bool describe_gap(const EdgeCurve& edge, JointReport& report) noexcept {
-  constexpr int kAngles = 72;
-  report.mean_gap_mm = 0.0;
-  report.max_gap_mm = 0.0;
-  for (int i = 0; i < kAngles; ++i) {
-    const double gap = edge.at(2.0 * std::numbers::pi * i / kAngles);
-    report.mean_gap_mm += gap / kAngles;
-    report.max_gap_mm = std::max(report.max_gap_mm, gap);
-  }
-  report.has_gap = report.mean_gap_mm > kMinGapMm;
+  const Width width = width_of(edge);
+  report.mean_gap_mm = width.mean_mm;
+  report.max_gap_mm = width.max_mm;
+  report.has_gap = width.mean_mm > kMinGapMm;
   return report.has_gap;
+}
+
+bool describe_mismatch(const EdgeCurve& edge, JointReport& report) noexcept {
+  const Width width = width_of(edge);
+  report.has_nozzle_edge = width.mean_mm > kMinGapMm;
+  report.mean_mismatch_mm = report.has_nozzle_edge ? width.mean_mm : 0.0;
+  report.max_mismatch_mm = report.has_nozzle_edge ? width.max_mm : 0.0;
+  return report.has_nozzle_edge;
 }
 
 void describe_residuals(const JointFit& fit, std::span<float> scratch,

@@ -11,16 +11,16 @@
 namespace dseam::seam {
 namespace {
 
-constexpr double kReachMm = 8.0;   // Widest gap, plus a few pixels of shell.
-constexpr double kInsideMm = 1.0;  // Deeper than this in the nozzle is its bore.
+constexpr double kReachMm = 8.0;   // Widest gap, plus a few pixels of the surface.
+constexpr double kInsideMm = 1.0;  // Deeper than this in the other one is its inside.
 constexpr double kBehindMm = 60.0;
 constexpr double kMarginMm = 0.1;
 constexpr double kMarginNoises = 4.0;
-constexpr double kShellShare = 0.6;    // Of the margin: between the two a pixel tells nothing.
+constexpr double kSurfaceShare = 0.6;  // Of the margin: between the two a pixel tells nothing.
 constexpr std::size_t kMaxApart = 24;  // A dead band lies between the two.
 constexpr std::size_t kMaxFlying = 3;
-constexpr std::size_t kShellRun = 2;  // Pixels beside the last one.
-constexpr double kLineMm = 0.8;       // Between two lines that are walked.
+constexpr std::size_t kSurfaceRun = 2;  // Pixels beside the last one.
+constexpr double kLineMm = 0.8;         // Between two lines that are walked.
 constexpr int kRays = 360;
 constexpr double kRayStepMm = 2.0;
 constexpr std::uint32_t kNoiseStride = 8;
@@ -32,9 +32,9 @@ Eigen::Vector3d ray_of(const depth::Intrinsics& k, double u, double v) noexcept 
 }  // namespace
 
 void EdgeScanner::run(std::span<const depth::DepthImage> frames,
-                      std::span<const splice::SplicedView> views, const JointFit& fit,
+                      std::span<const splice::SplicedView> views, const EndingSurface& surface,
                       double noise_mm) noexcept {
-  fit_ = &fit;
+  surface_ = surface;
   margin_mm_ = kMarginMm + kMarginNoises * std::max(noise_mm, pixel_noise_mm(frames, views));
   intervals_.clear();
   full_ = false;
@@ -56,13 +56,13 @@ void EdgeScanner::run(std::span<const depth::DepthImage> frames,
 
 // Lines this many pixels apart lie as far from each other on the part, whatever the camera.
 std::uint32_t EdgeScanner::stride_of(const depth::Intrinsics& k) const noexcept {
-  const Eigen::Vector3d p = T_base_camera_.inverse() * fit_->joint().nozzle.point;
+  const Eigen::Vector3d p = T_base_camera_.inverse() * surface_.fit().joint().nozzle.point;
   const double pixel_mm = std::max(1e-3, p.z() / k.fx);
   return static_cast<std::uint32_t>(std::clamp(kLineMm / pixel_mm, 1.0, 8.0));
 }
 
 // A fused point is the mean of several pixels; a single one scatters more, and it is single pixels
-// that are told apart here. The median is the shell's even where a gap is seen.
+// that are told apart here. The median is the surface's even where a gap is seen.
 double EdgeScanner::pixel_noise_mm(std::span<const depth::DepthImage> frames,
                                    std::span<const splice::SplicedView> views) noexcept {
   constexpr double kBinMm = 0.01;
@@ -77,7 +77,7 @@ double EdgeScanner::pixel_noise_mm(std::span<const depth::DepthImage> frames,
     const Window w = window_of(frames[i].intrinsics);
     for (std::uint32_t v = w.v0; v < w.v1; v += kNoiseStride) {
       for (std::uint32_t u = w.u0; u < w.u1; u += kNoiseStride) {
-        const double off_mm = off_shell_mm(frames[i], u, v);
+        const double off_mm = off_surface_mm(frames[i], u, v);
         const auto bin = static_cast<std::size_t>(std::min(off_mm / kBinMm, 127.0));
         histogram[bin] += off_mm < 128.0 * kBinMm ? 1U : 0U;
         total += off_mm < 128.0 * kBinMm ? 1U : 0U;
@@ -92,29 +92,29 @@ double EdgeScanner::pixel_noise_mm(std::span<const depth::DepthImage> frames,
   return kSigmaOfMedian * kBinMm * static_cast<double>(median);
 }
 
-// How far a pixel of the shell beside the joint lies from the fit; infinite for all others.
-double EdgeScanner::off_shell_mm(const depth::DepthImage& frame, std::uint32_t u,
-                                 std::uint32_t v) const noexcept {
+// How far a pixel of the surface beside the joint lies from the fit; infinite for all others.
+double EdgeScanner::off_surface_mm(const depth::DepthImage& frame, std::uint32_t u,
+                                   std::uint32_t v) const noexcept {
   const double z = frame.count_at(u, v) * frame.mm_per_count;
   const Eigen::Vector3d p = T_base_camera_ * (z * ray_of(frame.intrinsics, u, v));
-  const double outside = signed_distance(fit_->joint().nozzle, p);
+  const double outside = surface_.rough_away(p);
   const bool beside = z > 0.0 && outside > 0.5 * kReachMm && outside < 2.0 * kReachMm &&
-                      std::abs(shell_distance(fit_->joint(), p)) < 2.0;
-  return beside ? std::abs(fit_->above_shell(p)) : std::numeric_limits<double>::infinity();
+                      std::abs(surface_.rough_off(p)) < 2.0;
+  return beside ? std::abs(surface_.off(p)) : std::numeric_limits<double>::infinity();
 }
 
-// The part of the image in which the joint and the shell around it lie, and which blocks of it.
+// The part of the image in which the joint and the surface around it lie, and which blocks of it.
 EdgeScanner::Window EdgeScanner::window_of(const depth::Intrinsics& k) noexcept {
   const geometry::RigidTransform T_camera_base = T_base_camera_.inverse();
   std::fill(blocks_.begin(), blocks_.end(), std::uint8_t{0});
   Window w{k.width, k.height, 0, 0};
   for (int i = 0; i < kRays; ++i) {
     const double phi = 2.0 * std::numbers::pi * i / kRays;
-    const auto root = root_at(fit_->joint(), fit_->frame(), phi);
+    const auto root = surface_.root_at(phi);
     if (!root) {
       continue;
     }
-    const Eigen::Vector3d n = outward_normal(fit_->joint().nozzle, *root);
+    const Eigen::Vector3d n = surface_.outwards(*root);
     for (double away_mm = 0.0; away_mm <= kReachMm; away_mm += kRayStepMm) {
       const Eigen::Vector3d p = T_camera_base * (*root + away_mm * n);
       const double u = k.fx * p.x() / p.z() + k.cx;
@@ -132,8 +132,10 @@ EdgeScanner::Window EdgeScanner::window_of(const depth::Intrinsics& k) noexcept 
 void EdgeScanner::mark(const PixelPlace& at, const depth::Intrinsics& k, Window& w) noexcept {
   const std::uint32_t bu = at.u / kBlock;
   const std::uint32_t bv = at.v / kBlock;
-  for (std::uint32_t y = bv - std::min<std::uint32_t>(bv, 1); y <= std::min(bv + 1, kBlocksAcross - 1); ++y) {
-    for (std::uint32_t x = bu - std::min<std::uint32_t>(bu, 1); x <= std::min(bu + 1, kBlocksAcross - 1); ++x) {
+  for (std::uint32_t y = bv - std::min<std::uint32_t>(bv, 1);
+       y <= std::min(bv + 1, kBlocksAcross - 1); ++y) {
+    for (std::uint32_t x = bu - std::min<std::uint32_t>(bu, 1);
+         x <= std::min(bu + 1, kBlocksAcross - 1); ++x) {
       blocks_[y * kBlocksAcross + x] = 1;
     }
   }
@@ -150,20 +152,20 @@ EdgeScanner::Pixel EdgeScanner::classify(const depth::DepthImage& frame, std::ui
     return {};
   }
   const Eigen::Vector3d p = T_base_camera_ * (z * ray_of(frame.intrinsics, u, v));
-  const double outside = signed_distance(fit_->joint().nozzle, p);
-  const double rough = shell_distance(fit_->joint(), p);
+  const double outside = surface_.rough_away(p);
+  const double rough = surface_.rough_off(p);
   const auto z_mm = static_cast<float>(z);
   if (!(outside > -kInsideMm && outside < kReachMm && rough < 2.0 * margin_mm_ + 1.0 &&
         rough > -kBehindMm) ||
-      shell_normal(fit_->joint(), p).dot(fit_->joint().nozzle.axis) < 0.0) {
+      !surface_.is_beside(p)) {
     return {Kind::kOther, z_mm};
   }
-  const double above = rough < -2.0 ? rough : fit_->above_shell(p);
+  const double above = rough < -2.0 ? rough : surface_.off(p);
   if (above > margin_mm_) {
     return {Kind::kOther, z_mm};
   }
-  if (above > -kShellShare * margin_mm_) {
-    return {Kind::kShell, z_mm};
+  if (above > -kSurfaceShare * margin_mm_) {
+    return {Kind::kSurface, z_mm};
   }
   return {above < -margin_mm_ ? Kind::kBehind : Kind::kNothing, z_mm};
 }
@@ -189,36 +191,36 @@ void EdgeScanner::scan_line(const depth::DepthImage& frame, const Step& start,
       continue;
     }
     if (last != kNone && line_[last].kind != kind && i - last <= kMaxApart) {
-      kind == Kind::kShell ? try_pair(frame, start, i, last, count)
-                           : try_pair(frame, start, last, i, count);
+      kind == Kind::kSurface ? try_pair(frame, start, i, last, count)
+                             : try_pair(frame, start, last, i, count);
     }
     last = i;
   }
 }
 
-// The pixel's place on the fitted shell, whether the shell is there or not.
-std::optional<Eigen::Vector3d> EdgeScanner::on_shell(const depth::DepthImage& frame,
-                                                     const Step& start,
-                                                     std::size_t i) const noexcept {
+// The pixel's place on the fitted surface, whether that is there or not.
+std::optional<Eigen::Vector3d> EdgeScanner::on_surface(const depth::DepthImage& frame,
+                                                       const Step& start,
+                                                       std::size_t i) const noexcept {
   const double u = start.u + (start.along_u ? static_cast<double>(i) : 0.0);
   const double v = start.v + (start.along_u ? 0.0 : static_cast<double>(i));
   const Eigen::Vector3d direction = T_base_camera_.rotation * ray_of(frame.intrinsics, u, v);
   Eigen::Vector3d p = T_base_camera_.translation_mm + double{line_[i].z_mm} * direction;
   for (int k = 0; k < 4; ++k) {
-    const double slope = shell_normal(fit_->joint(), p).dot(direction);
+    const double slope = surface_.normal(p).dot(direction);
     if (!(slope < -0.05 * direction.norm())) {
       return std::nullopt;
     }
-    p -= fit_->above_shell(p) / slope * direction;
+    p -= surface_.off(p) / slope * direction;
   }
   return p;
 }
 
 // A flying pixel hangs between two depths; it does not lie on the line through the next two. It may
-// have been a pixel of the shell, and so may the one after it: the first that fits is sure.
-std::optional<std::size_t> EdgeScanner::first_sure(std::size_t shell, std::size_t behind,
+// have been a pixel of the surface, and so may the one after it: the first that fits is sure.
+std::optional<std::size_t> EdgeScanner::first_sure(std::size_t last, std::size_t behind,
                                                    std::size_t count) const noexcept {
-  const bool forward = behind > shell;
+  const bool forward = behind > last;
   for (std::size_t k = 0; k < kMaxFlying; ++k) {
     if (forward ? behind + k + 2 >= count : behind < k + 2) {
       return std::nullopt;
@@ -226,7 +228,7 @@ std::optional<std::size_t> EdgeScanner::first_sure(std::size_t shell, std::size_
     const std::size_t i = forward ? behind + k : behind - k;
     const Pixel& next = line_[forward ? i + 1 : i - 1];
     const Pixel& after = line_[forward ? i + 2 : i - 2];
-    if (line_[i].kind == Kind::kShell || line_[i].kind == Kind::kOther) {
+    if (line_[i].kind == Kind::kSurface || line_[i].kind == Kind::kOther) {
       return std::nullopt;
     }
     const double bend = line_[i].z_mm - 2.0F * next.z_mm + after.z_mm;
@@ -238,52 +240,52 @@ std::optional<std::size_t> EdgeScanner::first_sure(std::size_t shell, std::size_
   return std::nullopt;
 }
 
-// The shell goes on away from the edge: one pixel of its height alone may be a flying one.
-bool EdgeScanner::goes_on(std::size_t shell, std::size_t behind, std::size_t count) const noexcept {
-  const bool forward = shell > behind;
+// The surface goes on away from the edge: one pixel of its height alone may be a flying one.
+bool EdgeScanner::goes_on(std::size_t last, std::size_t behind, std::size_t count) const noexcept {
+  const bool forward = last > behind;
   bool found = false;
-  for (std::size_t k = 1; k <= kShellRun; ++k) {
-    if (forward ? shell + k >= count : shell < k) {
+  for (std::size_t k = 1; k <= kSurfaceRun; ++k) {
+    if (forward ? last + k >= count : last < k) {
       return false;
     }
-    const Kind kind = line_[forward ? shell + k : shell - k].kind;
+    const Kind kind = line_[forward ? last + k : last - k].kind;
     if (kind == Kind::kBehind || kind == Kind::kOther) {
       return false;
     }
-    found = found || kind == Kind::kShell;
+    found = found || kind == Kind::kSurface;
   }
   return found;
 }
 
-void EdgeScanner::try_pair(const depth::DepthImage& frame, const Step& start, std::size_t shell,
+void EdgeScanner::try_pair(const depth::DepthImage& frame, const Step& start, std::size_t last,
                            std::size_t behind, std::size_t count) noexcept {
-  const std::optional<std::size_t> sure = first_sure(shell, behind, count);
-  if (!sure || !goes_on(shell, behind, count)) {
+  const std::optional<std::size_t> sure = first_sure(last, behind, count);
+  if (!sure || !goes_on(last, behind, count)) {
     return;
   }
-  const auto low = on_shell(frame, start, *sure);
-  const auto high = on_shell(frame, start, shell);
+  const auto low = on_surface(frame, start, *sure);
+  const auto high = on_surface(frame, start, last);
   if (!low || !high) {
     return;
   }
-  const double low_mm = fit_->outside_nozzle(*low);
-  const double high_mm = fit_->outside_nozzle(*high) + past_edge_mm(frame, start, shell, *high);
+  const double low_mm = surface_.away(*low);
+  const double high_mm = surface_.away(*high) + past_edge_mm(frame, start, last, *high);
   if (low_mm < high_mm && low_mm > -kInsideMm && high_mm < kReachMm) {
-    const double phi = angle_about(fit_->joint().nozzle, fit_->frame(), 0.5 * (*low + *high));
+    const double phi = surface_.angle_of(0.5 * (*low + *high));
     full_ = !intervals_.append({phi, low_mm, high_mm}) || full_;
   }
 }
 
-// Where the ray runs away from the nozzle it may have met the hole's wall just under the shell,
-// which counts as shell down to the margin: so far past the edge may the pixel be.
+// Where the ray runs away from the other surface it may have met the wall just under the edge,
+// which counts as surface down to the margin: so far past the edge may the pixel be.
 double EdgeScanner::past_edge_mm(const depth::DepthImage& frame, const Step& start, std::size_t i,
                                  const Eigen::Vector3d& p) const noexcept {
   const double u = start.u + (start.along_u ? static_cast<double>(i) : 0.0);
   const double v = start.v + (start.along_u ? 0.0 : static_cast<double>(i));
   const Eigen::Vector3d direction = T_base_camera_.rotation * ray_of(frame.intrinsics, u, v);
-  const double outwards = direction.dot(outward_normal(fit_->joint().nozzle, p));
-  const double down = -direction.dot(shell_normal(fit_->joint(), p));
-  return down > 0.0 ? std::max(0.0, outwards / down) * kShellShare * margin_mm_ : 0.0;
+  const double outwards = direction.dot(surface_.outwards(p));
+  const double down = -direction.dot(surface_.normal(p));
+  return down > 0.0 ? std::max(0.0, outwards / down) * kSurfaceShare * margin_mm_ : 0.0;
 }
 
 }  // namespace dseam::seam

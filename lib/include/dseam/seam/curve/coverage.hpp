@@ -17,8 +17,7 @@ class RingCoverage {
  public:
   static constexpr std::size_t kMaxBins = 360;
 
-  /// `edge` is nullptr without a gap.
-  void run(const JointFit& fit, const EdgeCurve* edge, double spacing_mm) noexcept;
+  void run(const JointFit& fit, const JointEdges& edges, double spacing_mm) noexcept;
   [[nodiscard]] bool measured_at(double phi_rad) const noexcept;
   /// How wide a gap may be of which no edge was seen: how much farther from the joint the shell
   /// begins than the nozzle does. A dead band takes as much of both; 0 within the points' spacing.
@@ -31,6 +30,7 @@ class RingCoverage {
  private:
   using Distances = std::array<float, kMaxBins>;
   [[nodiscard]] std::size_t bin_of(double phi_rad) const noexcept;
+  void collect(const JointFit::Side& side, const EdgeCurve* edge, Distances& nearest) noexcept;
   double median_of(const Distances& nearest) noexcept;
 
   std::size_t num_bins_ = 0;

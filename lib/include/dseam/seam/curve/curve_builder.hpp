@@ -40,8 +40,7 @@ class CurveBuilder {
     double closure_mm = 0.0;
   };
 
-  /// `edge` is nullptr without a gap.
-  Report run(const Config& config, const JointFit& fit, const EdgeCurve* edge,
+  Report run(const Config& config, const JointFit& fit, const JointEdges& edges,
              const RingCoverage& coverage, const ErrorSources& errors,
              Buffer<SeamPoint>& out) noexcept;
 
@@ -52,7 +51,9 @@ class CurveBuilder {
                                                      const Eigen::Vector3d& guess) const noexcept;
   [[nodiscard]] double angle_of(double turn_rad) const noexcept;
   [[nodiscard]] bool held_at(double phi_rad) const noexcept;
+  [[nodiscard]] const EdgeCurve* edge_in_use() const noexcept;
   [[nodiscard]] double offset_at(double phi_rad) const noexcept;
+  [[nodiscard]] double height_at(double phi_rad) const noexcept;
   bool measure_length() noexcept;
   SeamPoint point_at(double s_mm, const RingCoverage& coverage,
                      const ErrorSources& errors) const noexcept;
@@ -60,7 +61,7 @@ class CurveBuilder {
 
   Config config_;
   const JointFit* fit_ = nullptr;
-  const EdgeCurve* edge_ = nullptr;
+  JointEdges edges_;
   std::array<Eigen::Vector3d, kStations> stations_;
   std::array<double, kStations + 1> lengths_{};
 };

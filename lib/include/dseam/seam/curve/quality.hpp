@@ -23,6 +23,8 @@ struct QualityLimits {
 void describe_joint(const JointFit& fit, JointReport& report) noexcept;
 /// Mean and largest gap; false where it is too small to be one.
 bool describe_gap(const EdgeCurve& edge, JointReport& report) noexcept;
+/// The same of the nozzle's height above the shell.
+bool describe_mismatch(const EdgeCurve& edge, JointReport& report) noexcept;
 /// Residuals of the points within 6 mm of the joint: those of the shell are normal ones, those of
 /// the nozzle lateral.
 void describe_residuals(const JointFit& fit, std::span<float> scratch,

@@ -66,4 +66,10 @@ class EdgeCurve {
   Storage meat_{};
 };
 
+/// Where the surfaces were seen to end beside each other; nullptr where they go on.
+struct JointEdges {
+  const EdgeCurve* shell = nullptr;   ///< Its distance from the nozzle: the gap.
+  const EdgeCurve* nozzle = nullptr;  ///< Its height above the shell: the mismatch.
+};
+
 }  // namespace dseam::seam

@@ -10,17 +10,17 @@
 #include "dseam/base/buffer.hpp"
 #include "dseam/depth/depth_image.hpp"
 #include "dseam/seam/edge/edge_curve.hpp"
-#include "dseam/seam/joint/joint_fit.hpp"
+#include "dseam/seam/edge/ending_surface.hpp"
 #include "dseam/splice/spliced_view.hpp"
 
 namespace dseam::seam {
 
-/// Looks in the raw frames for places where the shell ends beside the nozzle and something behind
-/// it is seen: the edge of a gap.
+/// Looks in the raw frames for places where a surface ends beside the other one and something
+/// behind it is seen: the shell's edge at a gap, or the end of a nozzle that stands off the shell.
 ///
 /// Rows and columns are walked. A pixel counts as behind only when its neighbour goes on from it,
 /// so that a flying pixel is never an end of an interval; a dropped pixel only makes one wider.
-/// A dead band shows nothing behind the shell and therefore is no gap.
+/// A dead band shows nothing behind the surface and therefore is no gap.
 ///
 /// Memory:  `bytes()` from the arena.
 /// Time:    O(pixels near the joint).
@@ -42,10 +42,10 @@ class EdgeScanner {
 
   /// `noise_mm` is that of the fused points; a single pixel's is measured here.
   void run(std::span<const depth::DepthImage> frames, std::span<const splice::SplicedView> views,
-           const JointFit& fit, double noise_mm) noexcept;
-  /// The same from the fused points alone: where the shell's points thin out towards the nozzle
-  /// although the nozzle's own points go on. Less exact, by a share of the points' spacing.
-  void run(const JointFit& fit, double spacing_mm) noexcept;
+           const EndingSurface& surface, double noise_mm) noexcept;
+  /// The same from the fused points alone: where the surface's points thin out towards the other
+  /// one although the other's own points go on. Less exact, by a share of the points' spacing.
+  void run(const EndingSurface& surface, double spacing_mm) noexcept;
   /// True when there were more intervals than room for them.
   [[nodiscard]] bool full() const noexcept { return full_; }
   [[nodiscard]] std::span<const EdgeInterval> intervals() const noexcept {
@@ -53,7 +53,7 @@ class EdgeScanner {
   }
 
  private:
-  enum class Kind : std::uint8_t { kNothing, kShell, kBehind, kOther };
+  enum class Kind : std::uint8_t { kNothing, kSurface, kBehind, kOther };
   struct Pixel {
     Kind kind = Kind::kNothing;
     float z_mm = 0.0F;
@@ -62,10 +62,10 @@ class EdgeScanner {
   static constexpr std::uint32_t kBlocksAcross = kMaxLine / kBlock;
   static constexpr std::size_t kBins = 120;
   static constexpr std::size_t kNearest = 6;
-  // The shell's points nearest to the nozzle in one bin of the angle, and the nozzle's lowest.
+  // The surface's points nearest to the other one in one bin of the angle, and the other's nearest.
   struct Nearest {
-    std::array<double, kNearest> shell_mm{};
-    double nozzle_mm = 0.0;
+    std::array<double, kNearest> surface_mm{};
+    double other_mm = 0.0;
   };
   struct Window {
     std::uint32_t u0 = 0, v0 = 0, u1 = 0, v1 = 0;  // The last ones are excluded.
@@ -80,28 +80,28 @@ class EdgeScanner {
 
   [[nodiscard]] double pixel_noise_mm(std::span<const depth::DepthImage> frames,
                                       std::span<const splice::SplicedView> views) noexcept;
-  [[nodiscard]] double off_shell_mm(const depth::DepthImage& frame, std::uint32_t u,
-                                    std::uint32_t v) const noexcept;
-  void collect_nearest(const JointFit& fit) noexcept;
+  [[nodiscard]] double off_surface_mm(const depth::DepthImage& frame, std::uint32_t u,
+                                      std::uint32_t v) const noexcept;
+  void collect_nearest(const EndingSurface& surface) noexcept;
   [[nodiscard]] Window window_of(const depth::Intrinsics& k) noexcept;
   void mark(const PixelPlace& at, const depth::Intrinsics& k, Window& w) noexcept;
   [[nodiscard]] std::uint32_t stride_of(const depth::Intrinsics& k) const noexcept;
   [[nodiscard]] Pixel classify(const depth::DepthImage& frame, std::uint32_t u,
                                std::uint32_t v) const noexcept;
   void scan_line(const depth::DepthImage& frame, const Step& start, std::size_t count) noexcept;
-  void try_pair(const depth::DepthImage& frame, const Step& start, std::size_t shell,
+  void try_pair(const depth::DepthImage& frame, const Step& start, std::size_t last,
                 std::size_t behind, std::size_t count) noexcept;
-  [[nodiscard]] std::optional<std::size_t> first_sure(std::size_t shell, std::size_t behind,
+  [[nodiscard]] std::optional<std::size_t> first_sure(std::size_t last, std::size_t behind,
                                                       std::size_t count) const noexcept;
-  [[nodiscard]] bool goes_on(std::size_t shell, std::size_t behind,
+  [[nodiscard]] bool goes_on(std::size_t last, std::size_t behind,
                              std::size_t count) const noexcept;
   [[nodiscard]] double past_edge_mm(const depth::DepthImage& frame, const Step& start,
                                     std::size_t i, const Eigen::Vector3d& p) const noexcept;
-  [[nodiscard]] std::optional<Eigen::Vector3d> on_shell(const depth::DepthImage& frame,
-                                                        const Step& start,
-                                                        std::size_t i) const noexcept;
+  [[nodiscard]] std::optional<Eigen::Vector3d> on_surface(const depth::DepthImage& frame,
+                                                          const Step& start,
+                                                          std::size_t i) const noexcept;
 
-  const JointFit* fit_ = nullptr;
+  EndingSurface surface_;
   geometry::RigidTransform T_base_camera_;
   double margin_mm_ = 0.1;
   bool full_ = false;
