@@ -78,13 +78,6 @@ void CellTree::build_level(std::size_t level, std::size_t num_children) noexcept
   }
 }
 
-Box CellTree::box_of(std::uint32_t cell) const noexcept {
-  const Node& node = node_storage_[cell / kLanes];
-  const std::size_t lane = cell % kLanes;
-  return {node.low_x[lane],  node.low_y[lane],  node.low_z[lane],
-          node.high_x[lane], node.high_y[lane], node.high_z[lane]};
-}
-
 Box CellTree::box_of_block(std::uint32_t block) const noexcept {
   return box_of_node(node_storage_[block]).box;
 }

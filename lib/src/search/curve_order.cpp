@@ -49,28 +49,39 @@ struct Axes {
   IntLanes x, y, z;
 };
 
-// The inverse undo of Skilling's transform for one axis and one bit.
-void undo(IntLanes& first, IntLanes& axis, std::int32_t bit) noexcept {
-  const IntLanes below = splat(bit - 1);
-  const IntLanes is_set = (axis & splat(bit)) == splat(bit);
-  const IntLanes swapped = (first ^ axis) & below;
-  axis = axis ^ select(is_set, splat(0), swapped);
-  first = first ^ select(is_set, below, swapped);
+IntLanes is_set(const IntLanes& axis, std::int32_t bit) noexcept {
+  return (axis & splat(bit)) == splat(bit);
 }
 
-Axes to_hilbert(Axes a) noexcept {
-  for (std::int32_t bit = 1 << (kBitsPerAxis - 1); bit > 1; bit >>= 1) {
-    a.x = a.x ^ (((a.x & splat(bit)) == splat(bit)) & splat(bit - 1));
-    undo(a.x, a.y, bit);
-    undo(a.x, a.z, bit);
-  }
+// The inverse undo of Skilling's transform for one axis and one bit.
+template <std::int32_t kBit>
+[[gnu::always_inline]] inline void undo(IntLanes& first, IntLanes& axis) noexcept {
+  const IntLanes set = is_set(axis, kBit);
+  const IntLanes swapped = (first ^ axis) & splat(kBit - 1);
+  axis = axis ^ select(set, splat(0), swapped);
+  first = first ^ select(set, splat(kBit - 1), swapped);
+}
+template <std::int32_t kBit>
+[[gnu::always_inline]] inline void undo(Axes& a) noexcept {
+  a.x = a.x ^ (is_set(a.x, kBit) & splat(kBit - 1));
+  undo<kBit>(a.x, a.y);
+  undo<kBit>(a.x, a.z);
+}
+
+// Written out for each bit, so that no constant is made at run time.
+template <int... kBelowTop>
+[[gnu::always_inline]] inline Axes to_hilbert(Axes a,
+                                              std::integer_sequence<int, kBelowTop...>) noexcept {
+  constexpr std::int32_t kTop = 1 << (kBitsPerAxis - 1);
+  (undo<(kTop >> kBelowTop)>(a), ...);
   a.y = a.y ^ a.x;
   a.z = a.z ^ a.y;
   IntLanes gray = splat(0);
-  for (std::int32_t bit = 1 << (kBitsPerAxis - 1); bit > 1; bit >>= 1) {
-    gray = gray ^ (((a.z & splat(bit)) == splat(bit)) & splat(bit - 1));
-  }
+  ((gray = gray ^ (is_set(a.z, kTop >> kBelowTop) & splat((kTop >> kBelowTop) - 1))), ...);
   return {a.x ^ gray, a.y ^ gray, a.z ^ gray};
+}
+Axes to_hilbert(const Axes& a) noexcept {
+  return to_hilbert(a, std::make_integer_sequence<int, kBitsPerAxis - 1>{});
 }
 
 // Ten bits with two empty places before each.

@@ -42,6 +42,13 @@ class LeastDistances {
     of_.least[place] =
         select(lanes::is_lane(lane), lanes::splat(its.squared_mm2), of_.least[place]);
   }
+  /// What another list has of one of the eight.
+  void take(const LeastDistances& other, std::size_t lane) noexcept {
+    const IntLanes its = lanes::is_lane(lane);
+    for (std::size_t i = 0; i < kRoom; ++i) {
+      of_.least[i] = select(its, other.of_.least[i], of_.least[i]);
+    }
+  }
 
   [[nodiscard]] const FloatLanes& squared_mm2(std::size_t place) const noexcept {
     return of_.least[place];

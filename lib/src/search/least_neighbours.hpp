@@ -121,6 +121,12 @@ class LeastNeighbours {
     const std::size_t at = Keys::place_of(lane);
     of_[at / kInPart].least[place].bits[at % kInPart] = std::bit_cast<double>(its);
   }
+  /// What another list has of one of the eight.
+  void take(const LeastNeighbours& other, std::size_t lane) noexcept {
+    for (std::size_t i = 0; i < kRoom; ++i) {
+      set(lane, i, other(lane, i));
+    }
+  }
 
   [[nodiscard]] FloatLanes squared_mm2(std::size_t place) const noexcept {
     Keys keys;

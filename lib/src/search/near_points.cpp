@@ -23,26 +23,36 @@ constexpr std::uint64_t transposed(std::uint64_t bits) noexcept {
   return bits;
 }
 
-// For each cell found a byte with one bit for each of the eight; wanted is the other way round.
+// For each cell found one bit for each of the eight; wanted is the other way round.
 class Masks {
  public:
   void set(std::size_t cell, std::uint32_t mask) noexcept {
-    eights_[cell / 8] |= std::uint64_t{mask} << (cell % 8 * 8);
+    masks_[cell] = static_cast<std::uint8_t>(mask);
   }
-  void turn(std::size_t count, NearPoints::CellSet* sets) const noexcept {
+  /// Those from `count` on are cleared first.
+  void turn(std::size_t count, NearPoints::CellSet* sets) noexcept {
+    std::fill(masks_.begin() + static_cast<std::ptrdiff_t>(count), masks_.end(), std::uint8_t{0});
     for (std::size_t own = 0; own < kLanes; ++own) {
       sets[own] = NearPoints::CellSet{};
     }
-    for (std::size_t i = 0; i * 8 < count; ++i) {
-      const std::uint64_t turned = transposed(eights_[i]);
+    for (std::size_t i = 0; i < count; i += 8) {
+      const std::uint64_t turned = transposed(eight_at(i));
       for (std::size_t own = 0; own < kLanes; ++own) {
-        sets[own].words[i / 8] |= (turned >> (own * 8) & 0xFFU) << (i % 8 * 8);
+        sets[own].words[i / 64] |= (turned >> (own * 8) & 0xFFU) << (i % 64);
       }
     }
   }
 
  private:
-  std::array<std::uint64_t, NearPoints::kMostCells / 8> eights_{};
+  [[nodiscard]] std::uint64_t eight_at(std::size_t i) const noexcept {
+    std::uint64_t eight = 0;
+    for (std::size_t j = 0; j < 8; ++j) {
+      eight |= std::uint64_t{masks_[i + j]} << (j * 8);
+    }
+    return eight;
+  }
+
+  std::array<std::uint8_t, NearPoints::kMostCells> masks_;
 };
 
 }  // namespace

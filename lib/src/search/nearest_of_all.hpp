@@ -97,13 +97,8 @@ class NearestOfAll {
     LeastDistances<kCompany> own;
     own.insert_own(QueryCell(cell), cell);
     const FloatLanes& company = own.squared_mm2(std::min(k_, kCompany) - 1);
-    Group group{kNothing, bits(company <= lanes::splat(kStray * guess_mm2_))};
-    for (std::size_t i = 0; i < kLanes && cell.index[i] != kNoPoint; ++i) {
-      if ((group.lanes >> i & 1U) != 0) {
-        group.box = both(group.box, box_at({cell.x[i], cell.y[i], cell.z[i]}));
-      }
-    }
-    return group;
+    const std::uint32_t together = bits(company <= lanes::splat(kStray * guess_mm2_));
+    return {box_of(cell, together & used_lanes(cell)), together};
   }
 
   // Among the points collected for the block.
@@ -141,7 +136,7 @@ class NearestOfAll {
     const std::uint32_t beyond =
         bits(lanes::splat(seen_mm2) < best.squared_mm2(k_ - 1)) | (kAll & ~group);
     if (seen_mm2 < kInfinity && beyond != 0) {
-      look_alone(at, beyond, best);
+      look_apart(at, beyond & used_lanes(tree_.cells()[at]), best);
     }
     learn(group, best);
   }
@@ -170,33 +165,54 @@ class NearestOfAll {
     return most;
   }
 
-  // One point at a time, no farther than the k-th that it knows of.
-  void look_alone(std::uint32_t at, std::uint32_t alone, Best& best) noexcept {
+  // A cell may hold the end of one surface and the beginning of another: for each such part what
+  // lies around it, then for what still misses some one point at a time.
+  [[gnu::noinline]] void look_apart(std::uint32_t at, std::uint32_t lanes, Best& best) noexcept {
     const Cell& cell = tree_.cells()[at];
-    const FloatLanes known = best.squared_mm2(k_ - 1);
-    for (; alone != 0; alone &= alone - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(alone));
-      if (cell.index[i] != kNoPoint) {
-        std::array<Neighbour, Best::kMost + 1> room;
-        NearestList list({room.data(), k_ + 1}, known[i]);
-        offer_around(at, {cell.x[i], cell.y[i], cell.z[i]}, list);
-        take_others(room, cell.index[i], i, best);
+    const QueryCell query(cell);
+    while (lanes != 0) {
+      const auto first = static_cast<std::size_t>(std::countr_zero(lanes));
+      const std::uint32_t part = lanes & part_of(query, cell, first);
+      lanes &= ~part;
+      Best its;
+      its.insert_own(query, cell);
+      const NearView others = near_.others_around(at, box_of(cell, part), reach_mm2_);
+      its.insert_all(query, others);
+      const FloatLanes known = its.squared_mm2(k_ - 1);
+      const float seen_mm2 = others.count > 0 ? reach_mm2_ : -1.0F;  // None may be too many.
+      for (std::uint32_t left = part; left != 0; left &= left - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(left));
+        if (known[i] <= seen_mm2) {
+          best.take(its, i);
+        } else {
+          look_alone(cell, i, known[i], best);
+        }
       }
     }
   }
-  void offer_around(std::uint32_t at, geometry::Vec3f point, NearestList& list) noexcept {
-    const float limit_mm2 = list.limit().squared_mm2;
-    const NearView others = limit_mm2 <= kStray * reach_mm2_
-                                ? near_.others_around(at, box_at(point), limit_mm2)
-                                : NearView{};
-    if (others.count == 0) {
-      offer_all(tree_, point, list);
-      return;
+  [[nodiscard]] std::uint32_t part_of(const QueryCell& query, const Cell& cell,
+                                      std::size_t i) const noexcept {
+    return bits(query.squared_distances(cell, i) <= lanes::splat(kStray * reach_mm2_)) | 1U << i;
+  }
+  [[nodiscard]] static Box box_of(const Cell& cell, std::uint32_t lanes) noexcept {
+    Box box = kNothing;
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(lanes));
+      box = both(box, box_at({cell.x[i], cell.y[i], cell.z[i]}));
     }
-    list.offer(EightPoints::of(tree_.cells()[at]), point);
-    for (std::size_t i = 0; i < others.count; i += kLanes) {
-      list.offer(EightPoints::of(others, i), point);
-    }
+    return box;
+  }
+  [[nodiscard]] static std::uint32_t used_lanes(const Cell& cell) noexcept {
+    const IntLanes unused = lanes::load_lanes<IntLanes>(cell.index) ==
+                            lanes::splat(static_cast<std::int32_t>(kNoPoint));
+    return kAll & ~bits(unused);
+  }
+  // No farther than the k-th that is known.
+  void look_alone(const Cell& cell, std::size_t i, float known_mm2, Best& best) const noexcept {
+    std::array<Neighbour, Best::kMost + 1> room;
+    NearestList list({room.data(), k_ + 1}, known_mm2);
+    offer_all(tree_, {cell.x[i], cell.y[i], cell.z[i]}, list);
+    take_others(room, cell.index[i], i, best);
   }
   // Of the k + 1 nearest in a place those that are not the point itself; among many in one place it
   // may not be there.

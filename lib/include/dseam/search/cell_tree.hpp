@@ -110,7 +110,12 @@ class CellTree {
   [[nodiscard]] std::span<const Cell> cells() const noexcept {
     return cell_storage_.first(num_cells_);
   }
-  [[nodiscard]] Box box_of(std::uint32_t cell) const noexcept;
+  [[nodiscard]] Box box_of(std::uint32_t cell) const noexcept {
+    const Node& n = node_storage_[cell / kLanes];
+    const std::size_t lane = cell % kLanes;
+    return {n.low_x[lane],  n.low_y[lane],  n.low_z[lane],
+            n.high_x[lane], n.high_y[lane], n.high_z[lane]};
+  }
   /// Eight cells with one parent are a block, the last one of fewer.
   [[nodiscard]] std::uint32_t num_blocks() const noexcept {
     return static_cast<std::uint32_t>(cells_of(num_cells_));
