@@ -126,33 +126,29 @@ void VoxelMap::flush(ViewMask seen_by, Report& report) noexcept {
   CellRuns& runs = runs_[0];
   const std::size_t count = runs.cut();
   for (std::size_t i = 0; i < count; ++i) {
-    runs.place[i] = hash_.place_of(runs.key(i));
-    hash_.fetch(runs.place[i]);
+    const CellKey key = runs.key(i);
+    runs.wanted[i] = {key, hash_.place_of(key)};
+    hash_.fetch(runs.wanted[i].place);
   }
   for (std::size_t i = 0; i < count; ++i) {
-    add(i, seen_by, report);
+    const std::size_t known = hash_.size();
+    const std::uint32_t number = hash_.find_or_insert(runs.wanted[i].key, runs.wanted[i].place);
+    if (number == VoxelHash::kFull) {
+      report.dropped_full += runs.count(i);
+      continue;
+    }
+    Sum& sum = sums_[number];
+    if (number == known) {
+      sum = Sum{};
+    }
+    sum.x += runs.x(i);
+    sum.y += runs.y(i);
+    sum.z += runs.z(i);
+    sum.count += runs.count(i);
+    sum.seen_by |= seen_by;
+    report.inserted += runs.count(i);
   }
   runs.clear();
-}
-
-void VoxelMap::add(std::size_t run, ViewMask seen_by, Report& report) noexcept {
-  const CellRuns& runs = runs_[0];
-  const std::size_t known = hash_.size();
-  const std::uint32_t number = hash_.find_or_insert(runs.key(run), runs.place[run]);
-  if (number == VoxelHash::kFull) {
-    report.dropped_full += runs.count(run);
-    return;
-  }
-  Sum& sum = sums_[number];
-  if (number == known) {
-    sum = Sum{};
-  }
-  sum.x += runs.x(run);
-  sum.y += runs.y(run);
-  sum.z += runs.z(run);
-  sum.count += runs.count(run);
-  sum.seen_by |= seen_by;
-  report.inserted += runs.count(run);
 }
 
 FusedCloudView VoxelMap::view() noexcept {

@@ -32,7 +32,7 @@ void VoxelHash::clear() noexcept {
   }
 }
 
-std::uint32_t VoxelHash::find_or_insert(CellKey key, Place place) noexcept {
+std::uint32_t VoxelHash::search_or_insert(CellKey key, Place place) noexcept {
   std::size_t at = place.slot;
   for (std::uint32_t probe = 0; probe < kMaxProbes; at = next(at, probe++)) {
     Slot& slot = slots_[at];

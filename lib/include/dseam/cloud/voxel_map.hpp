@@ -21,7 +21,7 @@ namespace dseam::cloud {
 /// and a million of them lose nothing.
 ///
 /// Frame:   whatever the points are in, usually base.
-/// Memory:  about 95 bytes a cell, and 20 kB.
+/// Memory:  about 95 bytes a cell, and 25 kB.
 /// Time:    O(1) a point, whatever the coordinates; view() is O(cells).
 /// Context: real-time safe; one thread at a time.
 /// Source:  the paper's equations 8 (with k from z) and 9.
@@ -82,7 +82,6 @@ class VoxelMap {
 
   VoxelMap(const Config& config, const search::VoxelHash& hash, std::size_t max_cells,
            Arena& arena) noexcept;
-  void add(std::size_t run, ViewMask seen_by, Report& report) noexcept;
 
   Config config_;
   float cells_per_mm_;

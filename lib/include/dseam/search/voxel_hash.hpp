@@ -73,7 +73,12 @@ class VoxelHash {
   };
   [[nodiscard]] Place place_of(CellKey key) const noexcept;
   void fetch(Place place) const noexcept { __builtin_prefetch(&slots_[place.slot]); }
-  [[nodiscard]] std::uint32_t find_or_insert(CellKey key, Place place) noexcept;
+  [[nodiscard]] std::uint32_t find_or_insert(CellKey key, Place place) noexcept {
+    const Slot& slot = slots_[place.slot];
+    const std::uint32_t number = slot.number - cleared_ - 1;
+    const bool is_here = slot.tag == place.tag && number < size_ && keys_[number] == key;
+    return is_here ? number : search_or_insert(key, place);
+  }
 
   [[nodiscard]] std::span<const CellKey> keys() const noexcept { return keys_.first(size_); }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
@@ -86,6 +91,8 @@ class VoxelHash {
     std::uint32_t number;  ///< Above `cleared_`, counted from there; else the slot is free.
     std::uint32_t tag;
   };
+
+  [[nodiscard]] std::uint32_t search_or_insert(CellKey key, Place place) noexcept;
 
   [[nodiscard]] static constexpr std::uint64_t mixed(std::uint64_t key,
                                                      std::uint64_t secret) noexcept {
