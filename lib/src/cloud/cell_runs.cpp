@@ -17,22 +17,24 @@ IntLanes is_same(const std::uint32_t* cell) noexcept {
   return lanes::load_lanes<IntLanes>(cell) == lanes::load_lanes<IntLanes>(cell - 1);
 }
 
-void sum_up(std::uint32_t* steps, std::size_t size) noexcept {
-  std::uint32_t sum = 0;
-  steps[0] = 0;
-  for (std::size_t i = 1; i <= size; ++i) {
-    sum += steps[i];
-    steps[i] = sum;
+}  // namespace
+
+// All three at once: each waits for its sum.
+void CellRuns::sum_up() noexcept {
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  std::uint32_t z = 0;
+  x_.steps[0] = y_.steps[0] = z_.steps[0] = 0;
+  for (std::size_t i = 1; i <= size_; ++i) {
+    x_.steps[i] = x += x_.steps[i];
+    y_.steps[i] = y += y_.steps[i];
+    z_.steps[i] = z += z_.steps[i];
   }
 }
 
-}  // namespace
-
 std::size_t CellRuns::cut() noexcept {
   constexpr std::int32_t kNumbers[kLanes] = {0, 1, 2, 3, 4, 5, 6, 7};
-  sum_up(x_.steps, size_);
-  sum_up(y_.steps, size_);
-  sum_up(z_.steps, size_);
+  sum_up();
   x_.cell[0] = kNoCell;
   std::size_t runs = 0;
   for (std::size_t i = 0; i < size_; i += kLanes) {

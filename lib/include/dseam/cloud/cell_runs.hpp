@@ -72,6 +72,7 @@ class CellRuns {
     std::uint32_t cell[kRoom];
     std::uint32_t steps[kRoom];
   };
+  void sum_up() noexcept;
   [[nodiscard]] std::uint32_t sum(const Points& axis, std::size_t run) const noexcept {
     return axis.steps[begin_[run + 1]] - axis.steps[begin_[run]];
   }
