@@ -53,6 +53,15 @@ void expect_same(std::span<const Neighbour> expected, std::span<const Neighbour>
       << "expected " << text(expected) << "\nfound    " << text(found);
 }
 
+std::size_t num_finite(const OwnedCloud& cloud) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const geometry::Vec3f p = cloud.view()[i];
+    count += std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) ? 1U : 0U;
+  }
+  return count;
+}
+
 /// Every family at several sizes and seeds; `seeds` is what the quick and the long run differ in.
 class GridOracle : public ::testing::TestWithParam<int> {
  protected:
@@ -82,14 +91,17 @@ TEST_P(GridOracle, k_nearest_of_all_are_the_textbook_ones) {
 
     index.k_nearest_of_all(k, found);
 
+    std::size_t answered = 0;
     for (std::uint32_t i = 0; i < cloud.size(); ++i) {
       const auto row = std::span<const Neighbour>(found).subspan(i * k, k);
       if (row[0].squared_mm2 != -1.0F) {
+        ++answered;
         auto expected = by_brute_force(cloud, cloud.view()[i], i);
         expected.resize(k, Neighbour{kNoPoint, std::numeric_limits<float>::infinity()});
         expect_same(expected, row);
       }
     }
+    EXPECT_EQ(answered, num_finite(cloud));
   });
 }
 
@@ -100,8 +112,10 @@ TEST_P(GridOracle, mean_distances_are_those_of_the_textbook_neighbours) {
 
     index.mean_distances(k, found);
 
+    std::size_t answered = 0;
     for (std::uint32_t i = 0; i < cloud.size(); ++i) {
       if (found[i] != -1.0F) {
+        ++answered;
         const auto expected = by_brute_force(cloud, cloud.view()[i], i);
         const std::size_t count = std::min(k, expected.size());
         float sum = 0.0F;
@@ -111,6 +125,7 @@ TEST_P(GridOracle, mean_distances_are_those_of_the_textbook_neighbours) {
         EXPECT_EQ(found[i], count == 0 ? 0.0F : sum / static_cast<float>(count));
       }
     }
+    EXPECT_EQ(answered, num_finite(cloud));
   });
 }
 
@@ -138,7 +153,9 @@ TEST_P(GridOracle, radius_queries_are_the_textbook_ones) {
   for_each_cloud(12, [](const OwnedCloud& cloud, const GridIndex& index, Pcg32 random) {
     const float radius_mm = static_cast<float>(random.below(8)) * 0.5F;
     std::vector<Neighbour> scratch(cloud.size());
+    std::size_t answered = 0;
     index.for_each_radius(radius_mm, scratch, [&](std::uint32_t i, auto others) {
+      ++answered;
       auto expected = by_brute_force(cloud, cloud.view()[i], i);
       std::erase_if(expected, [&](auto& n) { return n.squared_mm2 > radius_mm * radius_mm; });
       std::vector<Neighbour> sorted(others.begin(), others.end());
@@ -155,7 +172,36 @@ TEST_P(GridOracle, radius_queries_are_the_textbook_ones) {
         EXPECT_EQ(found[j + 1].squared_mm2, expected[j].squared_mm2);
       }
     });
+    EXPECT_EQ(answered, num_finite(cloud));
   });
+}
+
+// Larger than what the search collects around a block, so that the ways round that are taken too.
+TEST_P(GridOracle, in_a_large_cloud_too_every_hundredth_row_is_the_textbook_one) {
+  constexpr std::size_t kSize = 6000;
+  const OwnedCloud cloud = test::make_cloud(static_cast<Family>(GetParam()), kSize, 3);
+  test::ArenaOwner memory(GridIndex::bytes(kSize));
+  GridIndex index = GridIndex::make(kSize, memory.arena()).value();
+  index.rebuild(cloud.view());
+  for (const std::size_t k : {5U, 17U, 40U}) {
+    std::vector<Neighbour> found(kSize * k, Neighbour{7, -1.0F});
+    std::vector<float> means(kSize, -1.0F);
+
+    index.k_nearest_of_all(k, found);
+    index.mean_distances(k, means);
+
+    for (std::uint32_t i = 0; i < kSize; i += 100) {
+      if (std::isfinite(cloud.x[i] + cloud.y[i] + cloud.z[i])) {
+        const auto expected = by_brute_force(cloud, cloud.view()[i], i);
+        expect_same(std::span(expected).first(k), std::span(found).subspan(i * k, k));
+        float sum = 0.0F;
+        for (std::size_t j = 0; j < k; ++j) {
+          sum += std::sqrt(expected[j].squared_mm2);
+        }
+        EXPECT_EQ(means[i], sum / static_cast<float>(k));
+      }
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, GridOracle, ::testing::Range(0, test::kNumFamilies),
