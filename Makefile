@@ -40,13 +40,14 @@ cross:
 	cmake --preset cortex-m7-none-release
 	cmake --build --preset cortex-m7-none-release -j $(JOBS)
 
-# Times beside PCL in the same run.
+# Times beside PCL in the same run, in a folder of its own: `make test` must not need PCL afterwards.
+BENCH = build/$(PRESET)-bench
 bench:
 	@$(INSTALL) quick bench
-	cmake --preset $(PRESET) -DDSEAM_BUILD_BENCH=ON
-	cmake --build --preset $(PRESET) -j $(JOBS)
-	$(BUILD)/tests/bench/core_bench
-	$(BUILD)/tests/bench/seam_bench
+	cmake --preset $(PRESET) -B $(BENCH) -DDSEAM_BUILD_BENCH=ON
+	cmake --build $(BENCH) -j $(JOBS) --target core_bench seam_bench
+	$(BENCH)/tests/bench/core_bench --benchmark_repetitions=3
+	$(BENCH)/tests/bench/seam_bench
 
 # The campaigns and soaks that `make test` leaves out: hours.
 check-long: build
