@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs each stage of the core once over each family of clouds, every pair in a function of its own,
-// so that callgrind can say how many instructions it took. See docs/benchmarks.md.
+// so that callgrind can say how many instructions it took; check_effort.py does that and judges.
 #include <algorithm>
+#include <cstdio>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "dseam/cloud/normals.hpp"
@@ -19,7 +21,23 @@ constexpr std::size_t kPoints = 20000;
 constexpr int kSorted = kNumFamilies;  // These three are the nominal surface in another order.
 constexpr int kReversed = kNumFamilies + 1;
 constexpr int kShuffled = kNumFamilies + 2;
-constexpr int kNumClouds = kNumFamilies + 3;
+constexpr int kCrafted = kNumFamilies + 3;  // Cells whose numbers differ in few and high bits.
+constexpr int kNumClouds = kNumFamilies + 4;
+
+std::string name_of(int number) {
+  constexpr const char* kOthers[] = {"sorted", "reversed", "shuffled", "crafted_keys"};
+  return number < kNumFamilies ? std::string(name(static_cast<Family>(number)))
+                               : kOthers[number - kNumFamilies];
+}
+
+OwnedCloud crafted_cloud() {
+  OwnedCloud cloud;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const auto axis = [](std::size_t number) { return 3072.0F * static_cast<float>(number); };
+    cloud.add(axis(i % 28), axis(i / 28 % 28), axis(i / 784));
+  }
+  return cloud;
+}
 
 OwnedCloud in_order(const OwnedCloud& cloud, int order) {
   std::vector<std::size_t> places(cloud.size());
@@ -41,6 +59,9 @@ OwnedCloud in_order(const OwnedCloud& cloud, int order) {
 }
 
 OwnedCloud cloud_of(int number) {
+  if (number == kCrafted) {
+    return crafted_cloud();
+  }
   return number < kNumFamilies ? make_cloud(static_cast<Family>(number), kPoints, 1)
                                : in_order(make_cloud(Family::kSurface, kPoints, 1), number);
 }
@@ -55,7 +76,7 @@ struct Core {
   cloud::RadiusOutlierRemoval lonely =
       cloud::RadiusOutlierRemoval::make({}, kPoints, memory.arena()).value();
   cloud::VoxelDownsample voxels = cloud::VoxelDownsample::make({}, kPoints, memory.arena()).value();
-  cloud::NormalEstimation normals = cloud::NormalEstimation::make({.radius_mm = 2.5F}).value();
+  cloud::NormalEstimation normals = cloud::NormalEstimation::make({.radius_mm = 7.5F}).value();
   cloud::CloudBuffer cells{kPoints, memory.arena()};
   cloud::NormalsBuffer normal_buffer{kPoints, memory.arena()};
   std::vector<std::uint32_t> storage = std::vector<std::uint32_t>(kPoints);
@@ -97,6 +118,7 @@ void run_one(Core& core) {
   effort_voxels<kCloud>(core, cloud);
   effort_normals<kCloud>(core);
   effort_nearest<kCloud>(core, cloud);
+  std::printf("%d %s %zu\n", kCloud, name_of(kCloud).c_str(), core.cells.size());
 }
 
 template <int... kClouds>

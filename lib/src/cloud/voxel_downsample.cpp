@@ -65,10 +65,15 @@ void VoxelDownsample::find_nearest(const CloudView& cloud, const CloudView& cent
 std::uint32_t VoxelDownsample::write_points(const CloudView& cloud, const CloudView& centroids,
                                             CloudBuffer& out) const noexcept {
   const std::size_t count = std::min(centroids.size(), out.capacity());
-  const bool measured = config_.representative == Representative::kNearestPoint;
   out.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    out.set(i, measured ? cloud[nearest_[i].index] : centroids[i]);
+  if (config_.representative == Representative::kCentroid) {
+    std::copy_n(centroids.x.begin(), count, out.x().begin());
+    std::copy_n(centroids.y.begin(), count, out.y().begin());
+    std::copy_n(centroids.z.begin(), count, out.z().begin());
+  } else {
+    for (std::size_t i = 0; i < count; ++i) {
+      out.set(i, cloud[nearest_[i].index]);
+    }
   }
   return static_cast<std::uint32_t>(centroids.size() - count);
 }

@@ -155,7 +155,9 @@ FusedCloudView VoxelMap::view() noexcept {
   const double step_mm = static_cast<double>(config_.cell_mm) / static_cast<double>(kStepsPerCell);
   const auto centre = [&](std::uint64_t sum, std::uint32_t count, std::int32_t cell,
                           float origin_mm) noexcept {
-    const double inside_mm = static_cast<double>(sum) / static_cast<double>(count) * step_mm;
+    // Signed, since that is one instruction: no sum reaches 2^63.
+    const double steps = static_cast<double>(static_cast<std::int64_t>(sum));
+    const double inside_mm = steps / static_cast<double>(count) * step_mm;
     const double cell_mm = static_cast<double>(cell) * static_cast<double>(config_.cell_mm);
     return static_cast<float>(static_cast<double>(origin_mm) + cell_mm + inside_mm);
   };

@@ -140,11 +140,13 @@ class NearestOfAll {
     }
     learn(group, best);
   }
-  // Upwards in small steps, since a few strays say little; down at once where all eight say so.
+  // In small steps, since a few strays say little; at once where all eight say so.
   void learn(std::uint32_t group, const Best& best) noexcept {
     const float nearest_mm2 = least(best.squared_mm2(k_ - 1));
     const float farthest_mm2 = largest(best.squared_mm2(k_ - 1));
-    if (nearest_mm2 > guess_mm2_) {
+    if (nearest_mm2 > guess_mm2_ * kFarTooMuch) {
+      guess_mm2_ = nearest_mm2;
+    } else if (nearest_mm2 > guess_mm2_) {
       guess_mm2_ *= kGrow;
     } else if (farthest_mm2 * kFarTooMuch < guess_mm2_) {
       guess_mm2_ = farthest_mm2 * kFarTooMuch;

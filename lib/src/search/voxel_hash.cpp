@@ -37,12 +37,7 @@ std::uint32_t VoxelHash::search_or_insert(CellKey key, Place place) noexcept {
   for (std::uint32_t probe = 0; probe < kMaxProbes; at = next(at, probe++)) {
     Slot& slot = slots_[at];
     if (slot.number <= cleared_) {
-      if (size_ == keys_.size()) {
-        return kFull;
-      }
-      keys_[size_] = key;
-      slot = {cleared_ + ++size_, place.tag};
-      return size_ - 1;
+      return insert(key, place.tag, slot);
     }
     const std::uint32_t number = slot.number - cleared_ - 1;
     if (slot.tag == place.tag && keys_[number] == key) {

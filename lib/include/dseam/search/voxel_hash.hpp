@@ -74,9 +74,12 @@ class VoxelHash {
   [[nodiscard]] Place place_of(CellKey key) const noexcept;
   void fetch(Place place) const noexcept { __builtin_prefetch(&slots_[place.slot]); }
   [[nodiscard]] std::uint32_t find_or_insert(CellKey key, Place place) noexcept {
-    const Slot& slot = slots_[place.slot];
+    Slot& slot = slots_[place.slot];
+    if (slot.number <= cleared_) {
+      return insert(key, place.tag, slot);
+    }
     const std::uint32_t number = slot.number - cleared_ - 1;
-    const bool is_here = slot.tag == place.tag && number < size_ && keys_[number] == key;
+    const bool is_here = slot.tag == place.tag && keys_[number] == key;
     return is_here ? number : search_or_insert(key, place);
   }
 
@@ -92,6 +95,15 @@ class VoxelHash {
     std::uint32_t tag;
   };
 
+  /// Into a free slot.
+  [[nodiscard]] std::uint32_t insert(CellKey key, std::uint32_t tag, Slot& slot) noexcept {
+    if (size_ == keys_.size()) {
+      return kFull;
+    }
+    keys_[size_] = key;
+    slot = {cleared_ + ++size_, tag};
+    return size_ - 1;
+  }
   [[nodiscard]] std::uint32_t search_or_insert(CellKey key, Place place) noexcept;
 
   [[nodiscard]] static constexpr std::uint64_t mixed(std::uint64_t key,
