@@ -20,6 +20,16 @@ void add_common_options(CLI::App& app, Invocation& invocation) {
       ->check(CLI::IsMember({"dseam", "paper"}));
 }
 
+/// The paper's chain begins with one merged cloud: elsewhere the option would be without effect.
+void check_method(const CLI::App& app, const Invocation& invocation) {
+  const std::string command = app.get_subcommands().front()->get_name();
+  if (invocation.method == "paper" && command != "extract" && command != "config") {
+    throw Failure(
+        ExitCode::kUsage,
+        "--method paper works on a merged cloud: dseam extract has it, " + command + " does not");
+  }
+}
+
 void print_error(const std::string& lines) {
   for (std::size_t start = 0; start < lines.size();) {
     const std::size_t end = std::min(lines.find('\n', start), lines.size());
@@ -53,6 +63,7 @@ ExitCode run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? ExitCode::kDone : ExitCode::kUsage;
   }
+  check_method(app, invocation);
   return invocation.run(invocation);
 }
 

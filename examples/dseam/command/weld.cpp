@@ -89,7 +89,7 @@ ExitCode weld_seam(const Options& options, const Settings& settings, OutputFolde
   job.path = motion.points();
   job.robot = drive.facts;
   if (!drive.finished) {
-    job.warnings.push_back(drive.fault);
+    job.fault = (interrupted ? "interrupted: " : "") + drive.fault;
     return ExitCode::kDevice;
   }
   return ExitCode::kDone;
@@ -99,7 +99,8 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   Settings settings;
   invocation.configure(settings);
   if (settings.method == Method::kPaper) {
-    throw Failure(ExitCode::kUsage, "--method paper works on a merged cloud: use dseam extract");
+    throw Failure(ExitCode::kUsage,
+                  "job.method = \"paper\" works on a merged cloud: dseam extract has it");
   }
   check_robot(options.robot, options.waive_operator);
   const auto T_flange_camera = hand_eye_of(options, settings);
@@ -126,9 +127,8 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   if (code == ExitCode::kDone) {
     code = weld_seam(options, settings, folder, interrupted, progress, motion, job);
   }
-  if (interrupted) {
-    const std::string robot = job.warnings.empty() ? "" : "; " + job.warnings.back();
-    throw Failure(ExitCode::kDevice, "interrupted: nothing was written" + robot);
+  if (interrupted && job.fault.empty()) {
+    throw Failure(ExitCode::kDevice, "interrupted before the weld: nothing was written");
   }
   write_products(job, folder);
   print_summary(job, folder);

@@ -33,6 +33,9 @@ void write_products(const JobReport& job, OutputFolder& folder) {
 
 void print_summary(const JobReport& job, const OutputFolder& folder) {
   std::cout << (job.weld ? "accepted: " : "refused: ") << job.reason << '\n';
+  if (!job.fault.empty()) {
+    std::cout << "not welded to the end: " << job.fault << '\n';
+  }
   if (!job.seam_base.points.empty()) {
     std::cout << "seam: " << fixed(job.seam_base.length_mm, 1) << " mm, "
               << job.seam_base.points.size() << " points\n";

@@ -24,6 +24,9 @@ std::string tile(const std::string& value, const std::string& meaning) {
 std::string verdict(const JobReport& job) {
   return "<div class=\"verdict" + std::string(job.weld ? " good" : "") + "\"><b>" +
          (job.weld ? "Accepted" : "Refused") + "</b>" + escaped(job.reason) + "</div>\n" +
+         (job.fault.empty() ? ""
+                            : "<div class=\"verdict\"><b>Not welded to the end</b>" +
+                                  escaped(job.fault) + "</div>\n") +
          warnings_list(job.warnings);
 }
 

@@ -38,6 +38,7 @@ struct JobReport {
   bool weld = false;
   bool has_base = false;  ///< The frame is the robot's base, not that of the first camera.
   std::string reason;     ///< Of the verdict, for people.
+  std::string fault;      ///< What ended the weld before its end; empty where nothing did.
   std::vector<std::string> warnings;
   std::vector<StageRow> stages;
   std::vector<BudgetRow> budget;

@@ -163,6 +163,7 @@ Json report_json(const JobReport& job) {
           {"method", job.method},
           {"units", {{"length", "mm"}, {"angle", "rad"}, {"time", "ms"}}},
           {"verdict", {{"weld", job.weld}, {"reason", job.reason}}},
+          {"fault", job.fault},
           {"warnings", job.warnings},
           {"stages", stages_json(job.stages)},
           {"budget", budget_json(job.budget)},

@@ -47,14 +47,35 @@ TEST(PaperMethod, counts_its_stages_and_says_what_was_fitted) {
   EXPECT_NE(report.str().find("boundary points"), std::string::npos);
 }
 
-TEST(PaperMethod, weld_says_which_command_has_it) {
-  const test::ScratchFolder scratch;
+class MethodOf : public ::testing::TestWithParam<std::vector<std::string>> {};
 
-  const Outcome outcome =
-      run_program({"weld", "--camera", "sim", "--method", "paper", "--out", scratch.path("out")});
+TEST_P(MethodOf, a_command_without_it_says_which_one_has_it) {
+  const test::ScratchFolder scratch;
+  std::vector<std::string> arguments = GetParam();
+  arguments.insert(arguments.end(), {"--method", "paper", "--out", scratch.path("out")});
+
+  const Outcome outcome = run_program(arguments);
 
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.text.find("dseam extract"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("dseam extract has it"), std::string::npos) << outcome.text;
+  EXPECT_FALSE(std::filesystem::exists(scratch.path("out")));
+}
+
+using Words = std::vector<std::string>;
+INSTANTIATE_TEST_SUITE_P(Commands, MethodOf,
+                         ::testing::Values(Words{"weld", "--camera", "sim"},
+                                           Words{"fit", "points.csv"}, Words{"splice", "set"},
+                                           Words{"calibrate", "pairs.json"}),
+                         [](const auto& words) { return words.param.front(); });
+
+TEST(PaperMethod, a_configuration_for_it_is_refused_by_weld_too) {
+  const test::ScratchFolder scratch;
+
+  const Outcome outcome = run_program(
+      {"weld", "--camera", "sim", "--set", "job.method=paper", "--out", scratch.path("out")});
+
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.text.find("dseam extract has it"), std::string::npos) << outcome.text;
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
 
 #include "dseam/base/arena.hpp"
@@ -18,14 +17,14 @@ namespace dseam::pipeline {
 template <std::size_t kBytes>
 class ScanWorkspace {
  public:
-  ScanWorkspace() noexcept : arena_(memory_) {}
+  ScanWorkspace() noexcept : arena_({&memory_[0], kBytes}) {}
   ScanWorkspace(const ScanWorkspace&) = delete;
   ScanWorkspace& operator=(const ScanWorkspace&) = delete;
 
   [[nodiscard]] Arena& arena() noexcept { return arena_; }
 
  private:
-  alignas(64) std::array<std::byte, kBytes> memory_;
+  alignas(64) std::byte memory_[kBytes];  // Left as it is: the arena initialises what it hands out.
   Arena arena_;
 };
 
