@@ -7,9 +7,11 @@ PRESET ?= $(if $(filter 1,$(V3)),host-release,host-baseline)
 JOBS ?= $(shell nproc)
 OUT ?= out/demo
 BUILD = build/$(PRESET)
+THREADED = rt_core_test rt_linux_test candump_test socketcan_test fake_camera_test
+CYCLE = rt_core_test rt_session_test link_test
 INSTALL = cmake/install_packages.sh
 
-.PHONY: demo test check check-long cross bench test-vm configure build clean
+.PHONY: demo test check check-long cross sanitize fuzz bench test-vm configure build clean
 
 demo: build
 	$(BUILD)/examples/dseam/dseam weld --camera sim --robot sim --out $(OUT)
@@ -24,12 +26,39 @@ configure:
 build: configure
 	cmake --build --preset $(PRESET) -j $(JOBS)
 
-# Format of all sources, and the second compiler.
+# Format of all sources, the second compiler, every public header by itself, and lint (.clang-tidy).
 check:
 	@$(INSTALL) quick check
 	git ls-files '*.cpp' '*.hpp' | xargs clang-format-14 --dry-run --Werror
 	cmake --preset host-clang
 	cmake --build --preset host-clang -j $(JOBS)
+	cmake --build --preset host-clang -j $(JOBS) --target all_verify_interface_header_sets
+	git ls-files 'lib/*.cpp' 'hal/*.cpp' 'rt/*.cpp' 'examples/*.cpp' | \
+	  xargs -n 4 -P $(JOBS) clang-tidy-14 --quiet -p build/host-clang
+
+# The quick tests under the address and undefined-behaviour sanitizers, those with threads under the
+# thread sanitizer, and the cycle's paths under the real-time sanitizer.
+sanitize:
+	@$(INSTALL) quick rtsan
+	cmake --preset host-asan
+	cmake --build --preset host-asan -j $(JOBS)
+	ctest --preset host-asan -LE 'long|vm' -j $(JOBS)
+	cmake --preset host-tsan
+	cmake --build --preset host-tsan -j $(JOBS) --target $(THREADED)
+	for t in $(THREADED); do $$(find build/host-tsan/tests -type f -name $$t) || exit 1; done
+	cmake --preset host-rtsan
+	cmake --build --preset host-rtsan -j $(JOBS) --target $(CYCLE)
+	for t in $(CYCLE); do $$(find build/host-rtsan/tests -type f -name $$t) || exit 1; done
+
+# Everything that parses under libFuzzer, FUZZ_SECONDS each; what it finds grows in build/fuzz.
+FUZZ_SECONDS ?= 60
+fuzz:
+	@$(INSTALL) quick check
+	cmake --preset host-fuzz
+	cmake --build --preset host-fuzz -j $(JOBS) --target fuzzers
+	for t in tests/fuzz/corpus/*; do t=$$(basename $$t); mkdir -p build/fuzz/$$t; \
+	  build/host-fuzz/tests/fuzz/$$t -max_total_time=$(FUZZ_SECONDS) -rss_limit_mb=2048 \
+	    -artifact_prefix=build/fuzz/ build/fuzz/$$t tests/fuzz/corpus/$$t || exit 1; done
 
 # Both other processors: aarch64 under qemu-user, and lib/ on a bare Cortex-M7 without a heap.
 cross:

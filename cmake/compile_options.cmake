@@ -5,8 +5,15 @@ add_library(dseam_options INTERFACE)
 target_compile_features(dseam_options INTERFACE cxx_std_20)
 target_compile_options(dseam_options INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wdouble-promotion
-  -Wold-style-cast -Wnon-virtual-dtor -Wvla -Werror
+  -Wold-style-cast -Wnon-virtual-dtor -Wvla
+  $<$<BOOL:${PROJECT_IS_TOP_LEVEL}>:-Werror>  # A user's newer compiler may warn of more.
   -ffp-contract=off)  # The same bits on every processor; docs/decisions/0006 says why.
+
+if(DSEAM_FUZZ)
+  set(instrumented -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined)
+  target_compile_options(dseam_options INTERFACE ${instrumented})
+  target_link_options(dseam_options INTERFACE ${instrumented})
+endif()
 
 add_library(dseam_freestanding INTERFACE)
 target_link_libraries(dseam_freestanding INTERFACE dseam_options)

@@ -35,7 +35,7 @@ done
 as_root=()
 if [ "$(id -u)" != 0 ]; then
   command -v sudo >/dev/null || { echo "Missing packages: ${missing[*]}. Install them as root, or install sudo." >&2; exit 1; }
-  as_root=(sudo)
+  as_root=(sudo env DEBIAN_FRONTEND=noninteractive)  # sudo keeps no variables of its own accord.
 fi
 echo "Installing with apt: ${missing[*]}"
 export DEBIAN_FRONTEND=noninteractive

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <vector>
 
 #include "command/commands.hpp"
 
@@ -61,6 +62,10 @@ ExitCode run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    const std::vector<std::string> unknown = app.remaining(true);
+    if (error.get_exit_code() != 0 && !unknown.empty()) {  // Else what is missing hides it.
+      print_error("not understood: " + unknown.front());
+    }
     return app.exit(error) == 0 ? ExitCode::kDone : ExitCode::kUsage;
   }
   check_method(app, invocation);

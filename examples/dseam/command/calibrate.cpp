@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -9,7 +10,7 @@
 #include "dseam/calibration/hand_eye.hpp"
 #include "files/hand_eye_file.hpp"
 #include "files/output_folder.hpp"
-#include "input/json_reader.hpp"
+#include "input/pose_pairs.hpp"
 #include "report/text.hpp"
 #include "scan/marker_stations.hpp"
 
@@ -20,26 +21,6 @@ struct Options {
   std::filesystem::path pairs;
   std::filesystem::path out;
 };
-
-/// `[{"T_base_flange": [16], "T_camera_target": [16]}, ...]`, or the same by name.
-std::vector<calibration::PosePair> read_pairs(const std::filesystem::path& file) {
-  const nlohmann::json content = read_json(file);
-  if (!content.is_array() && !content.is_object()) {
-    throw Failure(ExitCode::kInput, file.string() + ": neither a list nor an object of pairs");
-  }
-  std::vector<calibration::PosePair> pairs;
-  for (const nlohmann::json& pair : content) {
-    const std::string where = file.string() + ": pair " + std::to_string(pairs.size());
-    pairs.push_back(
-        {rigid_at(pair, "T_base_flange", where), rigid_at(pair, "T_camera_target", where)});
-  }
-  if (pairs.size() > calibration::kMaxPosePairs) {
-    throw Failure(ExitCode::kInput, file.string() + ": " + std::to_string(pairs.size()) +
-                                        " pairs; at most " +
-                                        std::to_string(calibration::kMaxPosePairs));
-  }
-  return pairs;
-}
 
 std::string fault_of(const calibration::HandEye& result) {
   using calibration::HandEyeVerdict;

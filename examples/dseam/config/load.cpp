@@ -155,6 +155,13 @@ toml::table parsed(const std::string& name, const std::function<toml::table()>& 
   }
 }
 
+/// `name=word` as a shell leaves it of `name="word"`.
+std::string with_quotes(const std::string& assignment) {
+  const std::size_t value = assignment.find('=') + 1;
+  return value == 0 ? assignment
+                    : assignment.substr(0, value) + '"' + assignment.substr(value) + '"';
+}
+
 }  // namespace
 
 void load_config(const std::filesystem::path& file, std::vector<Key>& keys) {
@@ -167,7 +174,14 @@ void load_config(const std::filesystem::path& file, std::vector<Key>& keys) {
 
 void set_key(const std::string& assignment, std::vector<Key>& keys) {
   Faults faults("--set " + assignment);
-  apply(parsed("--set " + assignment, [&] { return toml::parse(assignment); }), keys, faults);
+  const auto parse = [&assignment] {
+    try {
+      return toml::parse(assignment);
+    } catch (const toml::parse_error&) {
+      return toml::parse(with_quotes(assignment));
+    }
+  };
+  apply(parsed("--set " + assignment, parse), keys, faults);
 }
 
 void print_config(const std::vector<Key>& keys, std::ostream& out) {

@@ -10,6 +10,7 @@
 
 #include "dseam/link/crc.hpp"
 #include "failure.hpp"
+#include "input/cloud_reader.hpp"
 #include "input/json_reader.hpp"
 
 namespace dseam::program {
@@ -59,21 +60,43 @@ Json hand_eye_json(const calibration::HandEye& calibrated) {
   return file;
 }
 
+namespace {
+
+/// What stands under `key`, or an empty object where that is none.
+nlohmann::json object_at(const nlohmann::json& content, const char* key) {
+  return content.contains(key) && content[key].is_object() ? content[key]
+                                                           : nlohmann::json::object();
+}
+
+bool is_unit(const nlohmann::json& units, const char* of, const char* unit) {
+  return units.contains(of) && units[of] == unit;
+}
+
+}  // namespace
+
 HandEyeFile read_hand_eye(const std::filesystem::path& file) {
-  const nlohmann::json content = read_json(file);
-  const auto fail = [&file](const char* fault) {
-    throw Failure(ExitCode::kInput, file.string() + ": " + fault);
+  return parse_hand_eye(read_bytes(file), file.string());
+}
+
+HandEyeFile parse_hand_eye(const std::string& bytes, const std::string& name) {
+  const nlohmann::json content = parse_json(bytes, name);
+  const auto fail = [&name](const char* fault) {
+    throw Failure(ExitCode::kInput, name + ": " + fault);
   };
   if (!content.is_object() || !content.contains("checksum") ||
       content["checksum"] != checksum_of(content)) {
     fail("damaged: its checksum does not match");
   }
-  const nlohmann::json units = content.value("units", nlohmann::json::object());
-  if (units.value("length", "") != "mm" || units.value("angle", "") != "rad") {
+  const nlohmann::json units = object_at(content, "units");
+  if (!is_unit(units, "length", "mm") || !is_unit(units, "angle", "rad")) {
     fail("its units are not mm and rad");
   }
-  const nlohmann::json expected = content.value("expected_error", nlohmann::json::object());
-  return {rigid_at(content, "T_flange_camera", file.string()), expected.value("tool_mm", 0.0)};
+  const nlohmann::json expected = object_at(content, "expected_error");
+  if (!expected.contains("tool_mm") || !expected["tool_mm"].is_number() ||
+      expected["tool_mm"].get<double>() < 0.0) {
+    fail("no expected_error.tool_mm");
+  }
+  return {rigid_at(content, "T_flange_camera", name), expected["tool_mm"].get<double>()};
 }
 
 }  // namespace dseam::program

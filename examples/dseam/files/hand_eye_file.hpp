@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "dseam/calibration/hand_eye.hpp"
 
@@ -19,7 +20,9 @@ struct HandEyeFile {
 };
 
 /// Errors:  throws Failure(kInput): unreadable, a checksum that does not match, other units than mm
-///          and rad, not rigid.
+///          and rad, no expected error, not rigid.
 [[nodiscard]] HandEyeFile read_hand_eye(const std::filesystem::path& file);
+/// The same of bytes that were read from `name`.
+[[nodiscard]] HandEyeFile parse_hand_eye(const std::string& bytes, const std::string& name);
 
 }  // namespace dseam::program

@@ -32,9 +32,21 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
   if (error) {
     fail(folder_, error.message());
   }
-  if (::access(folder_.c_str(), W_OK | X_OK) != 0) {
-    fail(folder_, std::strerror(errno));
+  prove_writable();
+}
+
+/// Permissions alone do not tell: a file system may be read-only, and root passes every check.
+void OutputFolder::prove_writable() const {
+  const fs::path probe = temporary("probe");
+  if (!std::ofstream(probe)) {
+    const std::string why = std::strerror(errno);
+    std::error_code ignored;
+    if (made_) {
+      fs::remove(folder_, ignored);
+    }
+    fail(folder_, why);
   }
+  fs::remove(probe);
 }
 
 OutputFolder::~OutputFolder() {
@@ -66,6 +78,12 @@ void OutputFolder::write(const std::string& name, const Writer& writer) {
 }
 
 void OutputFolder::commit() {
+  for (const std::string& name : pending_) {
+    std::error_code error;
+    if (fs::is_directory(path(name), error)) {
+      fail(path(name), "a folder of that name is in the way");  // Before the first is renamed.
+    }
+  }
   for (const std::string& name : pending_) {
     std::error_code error;
     fs::rename(temporary(name), path(name), error);

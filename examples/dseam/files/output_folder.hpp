@@ -34,6 +34,7 @@ class OutputFolder {
   [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_ / name; }
 
  private:
+  void prove_writable() const;
   [[nodiscard]] std::filesystem::path temporary(const std::string& name) const;
 
   std::filesystem::path folder_;

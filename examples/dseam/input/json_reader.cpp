@@ -10,6 +10,8 @@
 namespace dseam::program {
 namespace {
 
+constexpr int kMaxDepth = 32;  // What writes a value again calls itself for each level.
+
 [[noreturn]] void fail(const std::string& where, const std::string& fault) {
   throw Failure(ExitCode::kInput, where + ": " + fault);
 }
@@ -28,17 +30,24 @@ void collect(const nlohmann::json& node, std::vector<double>& numbers) {
 
 }  // namespace
 
-nlohmann::json read_json(const std::filesystem::path& file) {
-  const std::string bytes = read_bytes(file);
+nlohmann::json parse_json(const std::string& bytes, const std::string& name) {
+  const auto not_too_deep = [&name](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
+    return depth <= kMaxDepth ? true : (fail(name, "nested too deeply"), false);
+  };
   try {
-    return nlohmann::json::parse(bytes);
+    return nlohmann::json::parse(bytes, not_too_deep);
   } catch (const nlohmann::json::parse_error& error) {
     const std::size_t offset = std::min(bytes.size(), error.byte);
     const auto line =
         1 + std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(offset), '\n');
-    fail(file.string() + ":" + std::to_string(line),
-         bytes.empty() ? "empty" : "not JSON, or truncated");
+    fail(name + ":" + std::to_string(line), bytes.empty() ? "empty" : "not JSON, or truncated");
+  } catch (const nlohmann::json::out_of_range&) {
+    fail(name, "a number is too large");
   }
+}
+
+nlohmann::json read_json(const std::filesystem::path& file) {
+  return parse_json(read_bytes(file), file.string());
 }
 
 geometry::RigidTransform rigid_at(const nlohmann::json& object, const char* key,

@@ -11,6 +11,8 @@ namespace dseam::program {
 
 /// Reads a JSON file. Throws Failure(kInput) with file, line and fault.
 [[nodiscard]] nlohmann::json read_json(const std::filesystem::path& file);
+/// The same of bytes that were read from `name`.
+[[nodiscard]] nlohmann::json parse_json(const std::string& bytes, const std::string& name);
 
 /// The rigid transform under `key`: 16 numbers row by row, or 4 rows of 4, in mm.
 ///

@@ -30,6 +30,22 @@ std::string verdict(const JobReport& job) {
          warnings_list(job.warnings);
 }
 
+/// The largest part of most budgets, which the sigmas among the views do not hold.
+std::string base_tile(const std::vector<BudgetRow>& budget) {
+  return budget.empty()
+             ? ""
+             : tile(fixed(total_sigma_mm(budget), 2) + " mm", "sigma in the robot's base");
+}
+
+std::string gap_tile(const seam::JointReport& joint) {
+  if (joint.has_gap) {
+    return tile(fixed(joint.mean_gap_mm, 2) + " mm", "gap (mean)");
+  }
+  return joint.hidden_gap_mm > 0.0 ? tile("&le; " + fixed(joint.hidden_gap_mm, 2) + " mm",
+                                          "gap, if any: its edge was not seen")
+                                   : tile("none", "gap");
+}
+
 std::string tiles(const JobReport& job) {
   const seam::SeamReport& report = job.seam_report;
   const seam::SeamQuality& quality = report.quality;
@@ -42,8 +58,7 @@ std::string tiles(const JobReport& job) {
   out += tile(degrees(quality.largest_hole_rad), "largest hole");
   out += tile(fixed(quality.mean_sigma_lateral_mm, 3) + " mm", "sigma across the seam");
   out += tile(fixed(quality.mean_sigma_normal_mm, 3) + " mm", "sigma off the shell");
-  out += tile(report.joint.has_gap ? fixed(report.joint.mean_gap_mm, 2) + " mm" : "none",
-              "gap (mean)");
+  out += base_tile(job.budget) + gap_tile(report.joint);
   out += tile(degrees(report.joint.axes_angle_rad), "between the axes");
   return out + "</div>\n";
 }

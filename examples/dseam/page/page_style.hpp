@@ -17,9 +17,9 @@ h1{font-size:22px;margin:0}h2{font-size:17px;margin:34px 0 10px}
 .verdict{border-radius:10px;color:#fff;padding:16px 20px;margin:14px 0 18px;background:var(--bad)}
 .verdict.good{background:var(--good)}
 .verdict b{font-size:20px;display:block}
-.tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));gap:12px}
+.tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(128px,1fr));gap:12px}
 .tile,figure,.card{background:var(--paper);border:1px solid var(--rule);border-radius:10px}
-.tile{padding:12px 14px}.tile b{display:block;font-size:21px;font-weight:600}
+.tile{padding:12px 14px}.tile b{display:block;font-size:20px;font-weight:600}
 .tile span{color:var(--soft);font-size:13px}
 .pictures{display:grid;grid-template-columns:2fr 1fr;gap:14px}
 .pictures figure:first-child{grid-row:span 2;align-self:start}

@@ -12,8 +12,11 @@ namespace dseam::program {
 namespace {
 
 /// Headings that start with '#' are those of numbers.
-std::string table_start(const std::string& title, std::initializer_list<const char*> headings) {
-  std::string out = "<h2>" + title + "</h2>\n<div class=\"card\"><table><tr>";
+std::string table_start(const std::string& title, std::initializer_list<const char*> headings,
+                        const std::string& meaning = "") {
+  std::string out = "<h2>" + title + "</h2>\n";
+  out += meaning.empty() ? "" : "<p class=\"soft\">" + meaning + "</p>\n";
+  out += "<div class=\"card\"><table><tr>";
   for (const std::string heading : headings) {
     const bool number = heading.starts_with('#');
     out += (number ? "<th class=\"n\">" : "<th>") + heading.substr(number ? 1 : 0) + "</th>";
@@ -32,6 +35,11 @@ std::string bar(double share) {
 
 std::string count_text(double count) {
   return std::floor(count) == count ? fixed(count, 0) : fixed(count, 3);
+}
+
+std::string spaced(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
 }
 
 }  // namespace
@@ -74,8 +82,8 @@ std::string stage_table(const std::vector<StageRow>& stages) {
     for (const auto& [what, count] : stage.counts) {
       counts += (counts.empty() ? "" : ", ") + what + ' ' + count_text(count);
     }
-    out += "<tr>" + text(stage.name) + number(fixed(stage.ms, 1)) + bar(stage.ms / longest_ms) +
-           text(counts) + "</tr>\n";
+    out += "<tr>" + text(spaced(stage.name)) + number(fixed(stage.ms, 1)) +
+           bar(stage.ms / longest_ms) + text(counts) + "</tr>\n";
   }
   return out + "<tr class=\"total\">" + text("together") + number(fixed(sum_ms, 1)) +
          "<td></td><td></td></tr>" + kTableEnd;
@@ -104,8 +112,10 @@ std::string ring_table(const seam::SeamReport& report) {
     return "";
   }
   std::string out =
-      table_start("Rings considered", {"fate", "shell", "nozzle", "#radius, mm", "#coverage",
-                                       "#backed length, mm", "centre in base, mm"});
+      table_start("Rings considered",
+                  {"fate", "shell", "nozzle", "#radius, mm", "#coverage", "#backed length, mm",
+                   "centre in base, mm"},
+                  "Every place where two surfaces meet in a ring, and why it is the seam or not.");
   for (std::size_t i = 0; i < rings; ++i) {
     const seam::RingCandidate& ring = report.candidates[i];
     const Eigen::Vector3d& c = ring.centre_base;

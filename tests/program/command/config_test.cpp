@@ -107,6 +107,15 @@ TEST(Config, a_limit_that_is_raised_on_both_sides_is_taken) {
       0);
 }
 
+TEST(Config, a_word_needs_no_quotes_on_the_command_line) {
+  const Outcome outcome = run_program({"config", "--print", "--set", "seam.reference=root"});
+  const Outcome bad = run_program({"config", "--print", "--set", "seam.reference=rot"});
+
+  EXPECT_NE(outcome.text.find("reference = \"root\""), std::string::npos) << outcome.text;
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_NE(bad.text.find("'seam.reference' cannot be 'rot'"), std::string::npos) << bad.text;
+}
+
 TEST(Config, the_documentation_lists_every_key_as_it_is) {
   std::ifstream in(DSEAM_DOCS_DIR "/formats.md");
   std::stringstream formats;
@@ -123,6 +132,16 @@ TEST(Usage, what_is_not_understood_exits_with_2) {
   EXPECT_EQ(run_program({"frobnicate"}).exit_code, 2);
   EXPECT_EQ(run_program({"extract"}).exit_code, 2);
   EXPECT_EQ(run_program({"config", "--unit", "km"}).exit_code, 2);
+}
+
+TEST(Usage, a_misspelt_option_is_named_whatever_else_is_missing) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"--wrong"}, {"weld", "--wrong", "sim"}, {"config", "--wrong"}}) {
+    const Outcome outcome = run_program(words);
+
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_NE(outcome.text.find("not understood: --wrong"), std::string::npos) << outcome.text;
+  }
 }
 
 TEST(Usage, help_and_version_exit_with_0) {

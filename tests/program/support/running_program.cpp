@@ -64,8 +64,15 @@ bool RunningProgram::read_some() {
   return n > 0;
 }
 
-bool RunningProgram::writes(const std::string& text) {
-  while (outcome_.text.find(text) == std::string::npos) {
+bool RunningProgram::writes(const std::string& text, int times) {
+  const auto found = [&] {
+    std::size_t at = 0;
+    for (int i = 0; i < times && at != std::string::npos; ++i) {
+      at = outcome_.text.find(text, at == 0 ? 0 : at + 1);
+    }
+    return at != std::string::npos;
+  };
+  while (!found()) {
     if (!read_some()) {
       return false;
     }

@@ -18,8 +18,8 @@ class RunningProgram {
   RunningProgram& operator=(const RunningProgram&) = delete;
   ~RunningProgram();
 
-  /// Reads what it writes until `text` stands in it; false where it ends before.
-  [[nodiscard]] bool writes(const std::string& text);
+  /// Reads what it writes until `text` stands in it so often; false where it ends before.
+  [[nodiscard]] bool writes(const std::string& text, int times = 1);
   void interrupt();
   [[nodiscard]] Outcome wait();
   /// From interrupt() to its end, without the time in which it was ready and others had the
