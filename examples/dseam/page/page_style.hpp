@@ -19,7 +19,7 @@ h1{font-size:22px;margin:0}h2{font-size:17px;margin:34px 0 10px}
 .verdict b{font-size:20px;display:block}
 .tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(128px,1fr));gap:12px}
 .tile,figure,.card{background:var(--paper);border:1px solid var(--rule);border-radius:10px}
-.tile{padding:12px 14px}.tile b{display:block;font-size:20px;font-weight:600}
+.tile{padding:12px 14px}.tile b{display:block;white-space:nowrap;font-size:19px;font-weight:600}
 .tile span{color:var(--soft);font-size:13px}
 .pictures{display:grid;grid-template-columns:2fr 1fr;gap:14px}
 .pictures figure:first-child{grid-row:span 2;align-self:start}
@@ -39,7 +39,7 @@ svg text{font:12px system-ui,"DejaVu Sans",sans-serif;fill:var(--soft)}
 .charts{display:grid;grid-template-columns:1fr 1fr;gap:14px}
 .card{padding:14px 16px;overflow-x:auto}
 table{border-collapse:collapse;width:100%;font-size:14px}
-th{color:var(--soft);font-weight:500;text-align:left}
+th{color:var(--soft);font-weight:500;text-align:left}th,td:first-child{white-space:nowrap}
 th,td{padding:4px 12px 4px 0;border-bottom:1px solid var(--rule);vertical-align:top}
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}
 td.bar{width:34%;vertical-align:middle;padding-right:16px}td.bar i{display:block;height:10px;border-radius:3px;background:var(--shell)}

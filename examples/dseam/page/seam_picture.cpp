@@ -16,6 +16,8 @@ namespace {
 
 const std::vector<Rgb> kPalette{{124, 154, 184}, {222, 164, 98}, {178, 180, 182}};
 
+constexpr double kHiddenMm = 3.0;
+
 /// What the pictures show: the seam and its surroundings, or the whole cloud without one.
 struct Subject {
   Eigen::Vector3d centre_base = Eigen::Vector3d::Zero();
@@ -80,11 +82,13 @@ Viewpoint viewpoint(const Subject& subject, double azimuth_rad, double elevation
 
 class Overlay {
  public:
-  explicit Overlay(const PointPicture& picture) : picture_(picture) {}
+  /// Lines that lie deeper than `hidden_mm` behind the cloud are drawn as hidden.
+  Overlay(const PointPicture& picture, double hidden_mm)
+      : picture_(picture), hidden_mm_(hidden_mm) {}
 
   /// Lines of one class are joined while class and visibility stay the same.
   void add(const Eigen::Vector3d& p_base, const std::string& css) {
-    const bool hidden = picture_.hides(p_base, 3.0);
+    const bool hidden = picture_.hides(p_base, hidden_mm_);
     const std::string full = css + (hidden ? " hidden" : "");
     const Eigen::Vector3d p = picture_.viewpoint().project(p_base);
     const std::string place = fixed(p.x(), 1) + ' ' + fixed(p.y(), 1);
@@ -117,6 +121,7 @@ class Overlay {
   }
 
   const PointPicture& picture_;
+  double hidden_mm_;
   std::string css_;
   std::string path_;
   std::string svg_;
@@ -161,10 +166,10 @@ std::string scale_bar(double px_per_mm) {
 }
 
 std::string picture_svg(const JobReport& job, const Viewpoint& view,
-                        const std::vector<std::uint8_t>& tint) {
+                        const std::vector<std::uint8_t>& tint, double hidden_mm) {
   const double spacing = job.seam_report.spacing_mm > 0.0 ? job.seam_report.spacing_mm : 1.0;
   const PointPicture picture(view, job.cloud_base.points, tint, kPalette, 0.9 * spacing);
-  Overlay overlay(picture);
+  Overlay overlay(picture, hidden_mm);
   draw_path(job.path, overlay);
   draw_seam(job.seam_base, overlay);
   return "<svg class=\"picture\" viewBox=\"0 0 640 480\" role=\"img\"><image width=\"640\" "
@@ -181,10 +186,13 @@ std::array<SeamPicture, 3> seam_pictures(const JobReport& job) {
       job.seam_base.points.empty()
           ? std::vector<std::uint8_t>(job.cloud_base.points.size(), 2)
           : surface_of_points(job.cloud_base.points, job.seam_report.joint, 1.5);
+  // Along the axis the nozzle's own rim would hide all of the seam: there it is drawn over it.
   return {SeamPicture{"Along the nozzle's axis",
-                      picture_svg(job, viewpoint(subject, 0.0, 1.5707), tint)},
-          SeamPicture{"From one side", picture_svg(job, viewpoint(subject, -0.9, 0.6), tint)},
-          SeamPicture{"From the other side", picture_svg(job, viewpoint(subject, 2.2, 0.6), tint)}};
+                      picture_svg(job, viewpoint(subject, 0.0, 1.5707), tint, 1e9)},
+          SeamPicture{"From one side",
+                      picture_svg(job, viewpoint(subject, -0.9, 0.6), tint, kHiddenMm)},
+          SeamPicture{"From the other side",
+                      picture_svg(job, viewpoint(subject, 2.2, 0.6), tint, kHiddenMm)}};
 }
 
 }  // namespace dseam::program
