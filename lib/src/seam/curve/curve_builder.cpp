@@ -13,7 +13,8 @@ namespace dseam::seam {
 namespace {
 
 constexpr double kTurnRad = 2.0 * std::numbers::pi;
-constexpr int kNewtonSteps = 8;
+constexpr int kNewtonSteps =
+    30;  // The deviations' own slope is left out: it converges by a share a step.
 constexpr double kPlacedMm = 1e-7;
 constexpr double kGoodEnoughMm = 1e-3;
 constexpr double kStepRad = 2e-3;  // Of the central difference that gives the tangent.
