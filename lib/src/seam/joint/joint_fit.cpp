@@ -14,7 +14,6 @@ constexpr double kTurnRad = 2.0 * std::numbers::pi;
 constexpr double kInnerSpacings = 2.0;
 constexpr double kTukeyScales = 4.685 * 1.4826;  // On the median absolute residual.
 constexpr double kPatchMm = 8.0;  // The length over which depth noise hangs together.
-constexpr std::size_t kPatchesAway = 4;
 constexpr double kMinPatchWeight = 3.0;
 constexpr double kFullPatchWeight = 8.0;
 constexpr std::size_t kMinPoints = 60;
@@ -29,7 +28,7 @@ constexpr int kModelRounds = 3;
 JointFit::JointFit(std::size_t max_points, Arena& arena) noexcept
     : scratch_(arena.take<float>(max_points / 2)),
       sums_(arena.take<PatchSum>(kMaxPatches)),
-      patches_(arena.take<ResidualModel::Patch>(kMaxPatches)) {
+      patches_(arena.take<Patch>(kMaxPatches)) {
   shell_.points = Buffer<NearPoint>(arena.take<NearPoint>(max_points / 2));
   nozzle_.points = Buffer<NearPoint>(arena.take<NearPoint>(max_points / 2));
   shell_.residual = ResidualModel(arena);
@@ -149,14 +148,16 @@ void JointFit::model(Side& side, Surface& surface) noexcept {
   side.residual.reset(surface);
   side.fitted = false;
   measure(side, surface);
+  const PatchGrid grid{patches_round_,
+                       kTurnRad * joint_.nozzle.radius_mm / static_cast<double>(patches_round_),
+                       (band_mm_ - inner_mm_) / double{kPatchesAway}};
   for (int round = 0; round < kModelRounds; ++round) {
     const double cut = kTukeyScales * scale_of(side);
     const std::size_t count = collect_patches(side, cut);
-    side.fitted = cut > 0.0 && side.residual.fit(patches_.first(count));
+    side.fitted = cut > 0.0 && side.residual.fit(patches_.first(count), grid);
     if (!side.fitted) {
       return;
     }
-    side.residual.inflate(neighbour_correlation(side, count));
     if (&side == &nozzle_ && round + 1 < kModelRounds) {  // Seen all round, unlike the shell.
       surface = side.residual.move_into(surface);
     }
@@ -192,27 +193,15 @@ std::size_t JointFit::collect_patches(const Side& side, double cut_mm) noexcept 
     const PatchSum& s = sums_[i];
     if (s.weight >= kMinPatchWeight) {
       const Eigen::Vector3d mean = s.point / s.weight;
-      patches_[count++] = {mean, angle_about(joint_.nozzle, frame_, mean), s.away / s.weight,
-                           s.distance / s.weight, std::min(1.0, s.weight / kFullPatchWeight)};
+      patches_[count++] = {mean,
+                           angle_about(joint_.nozzle, frame_, mean),
+                           s.away / s.weight,
+                           s.distance / s.weight,
+                           std::min(1.0, s.weight / kFullPatchWeight),
+                           i};
     }
   }
   return count;
-}
-
-// Neighbouring patches that err alike tell less than their number: (1 + rho) / (1 - rho).
-double JointFit::neighbour_correlation(const Side& side, std::size_t count) const noexcept {
-  double same = 1e-12;
-  double next = 0.0;
-  double last = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const ResidualModel::Patch& q = patches_[i];
-    const double rest = q.distance_mm - side.residual.at(q.mean, q.phi_rad, q.away);
-    same += rest * rest;
-    next += i > 0 ? rest * last : 0.0;
-    last = rest;
-  }
-  const double rho = std::clamp(next / same, 0.0, 0.8);
-  return (1.0 + rho) / (1.0 - rho);
 }
 
 double JointFit::above_shell(const Eigen::Vector3d& p) const noexcept {

@@ -10,6 +10,7 @@ namespace {
 constexpr double kRidge = 1e-7;
 // In mm and rad: a larger change is a trade with a deviation that looks alike on a short arc.
 constexpr double kMaxMove = 1.5;
+constexpr double kExpectedMm = 1.0;  // Size of a deviation.
 constexpr std::size_t kFirstHarmonic = kMaxSurfaceParameters + ResidualModel::kOvalColumns;
 
 // Harmonics 0..K of an angle: 1, cos, sin, cos 2, sin 2, ...
@@ -114,6 +115,7 @@ bool ResidualModel::solve(const Columns& columns, Row& solution) noexcept {
       factor.at(i, k) = normal_[columns.index[i] * kColumns + columns.index[k]];
     }
     factor.at(i, i) = factor.at(i, i) * (1.0 + kRidge) + 1e-12;
+    factor.at(i, i) += columns.index[i] < kMaxSurfaceParameters ? 0.0 : fitted_[0].damping;
   }
   if (!factor.factorise()) {
     return false;
@@ -152,7 +154,27 @@ Surface ResidualModel::move_into(const Surface& surface) noexcept {
   return fitted_[0].surface;
 }
 
-bool ResidualModel::fit(std::span<const Patch> patches) noexcept {
+// From the rests of a moderate order, which follows most parts but not their noise.
+double ResidualModel::patches_in_one(std::span<const Patch> patches,
+                                     const PatchGrid& grid) noexcept {
+  std::array<float, kMaxPatches> rests;
+  Columns columns = columns_of({true, 2, 1});
+  if (patches.size() < 2 * columns.count) {
+    columns = columns_of({});
+  }
+  Row solution;
+  if (!solve(columns, solution)) {
+    return 1.0;
+  }
+  Row row;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    row_at(patches[i].mean, patches[i].phi_rad, patches[i].away, row);
+    rests[i] = static_cast<float>(patches[i].distance_mm - dot(row, solution));
+  }
+  return seam::patches_in_one(patches, std::span(rests).first(patches.size()), grid, columns.count);
+}
+
+bool ResidualModel::fit(std::span<const Patch> patches, const PatchGrid& grid) noexcept {
   constexpr std::array<Order, 9> kOrders = {{{false, -1, -1},
                                              {true, -1, -1},
                                              {false, 2, -1},
@@ -163,27 +185,34 @@ bool ResidualModel::fit(std::span<const Patch> patches) noexcept {
                                              {true, 4, 4},
                                              {true, 6, 4}}};
   accumulate(patches);
-  const double n = static_cast<double>(patches.size());
+  Fitted& f = fitted_[0];
+  f.valid = false;
+  f.damping = 0.0;
+  const double in_one = patches_in_one(patches, grid);
+  const double n = static_cast<double>(patches.size()) / in_one;
   double best = 1e300;
-  fitted_[0].valid = false;
   for (const Order& order : kOrders) {
     const Columns columns = columns_of(order);
     const double p = static_cast<double>(columns.count);
     Row solution;
-    if (n < 2.0 * p + 4.0 || !solve(columns, solution)) {
+    const bool simplest = &order == &kOrders.front();
+    if (n < (simplest ? 1.0 : 1.5) * p + 4.0 || !solve(columns, solution)) {
       continue;
     }
-    const double rest = squares(columns, solution) + 1e-12;
-    const double criterion = n * std::log(rest / n) + p * std::log(n);
+    const double rest = squares(columns, solution) / in_one + 1e-12;
+    const double criterion = n * std::log(rest / n) + p * std::log(n) * n / (n - p - 2.0);
+    if (simplest) {
+      f.damping = in_one * rest / n / (kExpectedMm * kExpectedMm);
+    }
     if (criterion < best) {
       best = criterion;
-      fitted_[0].valid = true;
-      fitted_[0].columns = columns;
-      fitted_[0].harmonics = std::max(order.constant, order.oval ? 3 : -1);
-      fitted_[0].scatter_mm = std::sqrt(rest / (n - p));
+      f.valid = true;
+      f.columns = columns;
+      f.harmonics = std::max(order.constant, order.oval ? 3 : -1);
+      f.variance_mm2 = in_one * rest / (n - p);
     }
   }
-  return fitted_[0].valid && solve(fitted_[0].columns, fitted_[0].solution);
+  return f.valid && solve(f.columns, f.solution);
 }
 
 double ResidualModel::at(const Eigen::Vector3d& p, double phi_rad, double away) const noexcept {
@@ -216,7 +245,7 @@ double ResidualModel::variance_at(const Eigen::Vector3d& p, double phi_rad,
   }
   const LentSymmetric factor(factor_, fitted_[0].columns.count);
   factor.forward(std::span<double>(x).first(fitted_[0].columns.count));
-  return fitted_[0].inflation * fitted_[0].scatter_mm * fitted_[0].scatter_mm * dot(x, x);
+  return fitted_[0].variance_mm2 * dot(x, x);
 }
 
 }  // namespace dseam::seam

@@ -31,8 +31,6 @@ struct NearPoint {
 /// Memory:  `bytes()` from the arena.
 class JointFit {
  public:
-  static constexpr std::size_t kMaxPatches = 512;
-
   /// One of the two surfaces near the joint.
   struct Side {
     Buffer<NearPoint> points;
@@ -43,7 +41,7 @@ class JointFit {
   [[nodiscard]] static constexpr std::size_t bytes(std::size_t max_points) noexcept {
     return 2 * (Arena::bytes<NearPoint>(max_points / 2) + ResidualModel::bytes()) +
            Arena::bytes<float>(max_points / 2) + Arena::bytes<PatchSum>(kMaxPatches) +
-           Arena::bytes<ResidualModel::Patch>(kMaxPatches);
+           Arena::bytes<Patch>(kMaxPatches);
   }
   JointFit() = default;
   JointFit(std::size_t max_points, Arena& arena) noexcept;
@@ -83,7 +81,6 @@ class JointFit {
   void model(Side& side, Surface& surface) noexcept;
   double scale_of(const Side& side) noexcept;
   std::size_t collect_patches(const Side& side, double cut_mm) noexcept;
-  double neighbour_correlation(const Side& side, std::size_t count) const noexcept;
 
   Joint joint_;
   NozzleFrame frame_;
@@ -96,7 +93,7 @@ class JointFit {
   Side nozzle_;
   std::span<float> scratch_;
   std::span<PatchSum> sums_;
-  std::span<ResidualModel::Patch> patches_;
+  std::span<Patch> patches_;
 };
 
 }  // namespace dseam::seam

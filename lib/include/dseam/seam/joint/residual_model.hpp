@@ -8,6 +8,7 @@
 #include "dseam/base/arena.hpp"
 #include "dseam/seam/joint/dense_solver.hpp"
 #include "dseam/seam/joint/joint.hpp"
+#include "dseam/seam/joint/patch_kinship.hpp"
 
 namespace dseam::seam {
 
@@ -15,8 +16,10 @@ namespace dseam::seam {
 ///
 /// Columns: the model's own parameters, the surface's ovality about its own axis, then harmonics
 /// of the angle about the nozzle, constant and linear in the distance from the joint. How many of
-/// them the points justify is decided by the Bayesian information criterion on patch means, which
-/// unlike points are nearly independent of each other.
+/// them the points justify is decided by the Bayesian information criterion on patch means; their
+/// number is that of the independent ones among them, as the rests of the simpler model show it.
+/// Deviations are expected to be of the order of a millimetre, which damps what hardly any patch
+/// speaks for.
 ///
 /// Memory:  `bytes()` from the arena.
 class ResidualModel {
@@ -27,15 +30,6 @@ class ResidualModel {
   static constexpr std::size_t kColumns =
       kMaxSurfaceParameters + kOvalColumns + 2 * kHarmonicColumns;
   using Row = std::array<double, kColumns>;
-
-  /// The mean of the points in one patch: where it is and how far off the model.
-  struct Patch {
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    double phi_rad = 0.0;
-    double away = 0.0;  ///< Distance from the joint over the band's width, 0 at the joint.
-    double distance_mm = 0.0;
-    double weight = 0.0;
-  };
 
   [[nodiscard]] static constexpr std::size_t bytes() noexcept {
     return 2 * Arena::bytes<double>(kColumns * kColumns) + Arena::bytes<Fitted>(1);
@@ -49,7 +43,7 @@ class ResidualModel {
   /// Forgets everything: the residual is 0 until fit().
   void reset(const Surface& surface) noexcept;
   /// Chooses the order and fits; false where there are too few patches for the model itself.
-  bool fit(std::span<const Patch> patches) noexcept;
+  bool fit(std::span<const Patch> patches, const PatchGrid& grid) noexcept;
 
   [[nodiscard]] double at(const Eigen::Vector3d& p, double phi_rad, double away) const noexcept;
   /// Variance of at(), from the scatter of the patches.
@@ -59,8 +53,6 @@ class ResidualModel {
   [[nodiscard]] int harmonics() const noexcept { return fitted_[0].harmonics; }
   /// Takes the change of the model's own parameters out of the residual; the surface after it.
   [[nodiscard]] Surface move_into(const Surface& surface) noexcept;
-  /// Multiplies all variances: what neighbouring patches have in common makes them count less.
-  void inflate(double factor) noexcept { fitted_[0].inflation = factor; }
 
  private:
   struct Order {
@@ -78,9 +70,9 @@ class ResidualModel {
     Row right{};
     Row solution{};
     Columns columns;
-    double squares = 0.0;  // Of the patches' distances, weighted.
-    double scatter_mm = 0.0;
-    double inflation = 1.0;
+    double squares = 0.0;       // Of the patches' distances, weighted.
+    double damping = 0.0;       // Of deviations: the rests' variance over that expected of them.
+    double variance_mm2 = 0.0;  // Of a patch, and of those that err like it.
     int harmonics = -1;
     bool valid = false;
   };
@@ -90,6 +82,7 @@ class ResidualModel {
   [[nodiscard]] Columns columns_of(const Order& order) const noexcept;
   bool solve(const Columns& columns, Row& solution) noexcept;
   [[nodiscard]] double squares(const Columns& columns, const Row& solution) const noexcept;
+  double patches_in_one(std::span<const Patch> patches, const PatchGrid& grid) noexcept;
 
   std::span<double> normal_;
   std::span<double> factor_;
