@@ -15,7 +15,6 @@ using seam::Refusal;
 
 constexpr std::size_t kPointsPerCell = 2;  // Fewer on average, and the cells grow instead.
 constexpr double kMinExtentMm = 3.0;       // A whole part smaller than this came in metres.
-constexpr double kToleranceCells = 0.25;   // How far a surface's cells may lie off it.
 constexpr double kToleranceNoises = 3.0;
 
 std::size_t num_cells(const SeamChain::Capacity& capacity) noexcept {
@@ -134,9 +133,8 @@ bool SeamChain::find_joint(const SeamInput& in, seam::SeamReport& report,
   if (report.refusal != Refusal::kNone) {
     return false;
   }
-  cell_mm_ = cells.cell_mm;
-  tolerance_mm_ = std::max(kToleranceCells * cells.cell_mm, kToleranceNoises * cells.noise_mm);
-  surfaces_.run(cells_.cells(), cell_mm_, tolerance_mm_);
+  tolerance_mm_ = std::max(cells.scale.tolerance_mm(), kToleranceNoises * cells.noise_mm);
+  surfaces_.run(cells_.cells(), cells.scale);
   const auto surfaces = surfaces_.surfaces();
   report.num_surfaces = static_cast<std::uint32_t>(surfaces.size());
   if (surfaces.size() < 2) {
@@ -144,16 +142,17 @@ bool SeamChain::find_joint(const SeamInput& in, seam::SeamReport& report,
     return false;
   }
   Viewpoints viewpoints;
-  const seam::RingFinder::Choice choice = rings_.run(
-      cells_.cells(), surfaces, cell_mm_, tolerance_mm_, hint_of(in, viewpoints), report);
+  const seam::RingFinder::Choice choice =
+      rings_.run(cells_.cells(), surfaces, cells.scale, hint_of(in, viewpoints), report);
   report.refusal = choice.refusal;
   joint = choice.joint;
+  bore_ = choice.bore;
   return choice.refusal == Refusal::kNone;
 }
 
 bool SeamChain::fit_joint(const SeamInput& in, const seam::Joint& joint,
                           seam::SeamReport& report) noexcept {
-  if (!fit_.run(in.cloud_base.points, joint, report.spacing_mm, tolerance_mm_)) {
+  if (!fit_.run(in.cloud_base.points, joint, bore_, report.spacing_mm, tolerance_mm_)) {
     report.refusal = Refusal::kLowCoverage;
     return false;
   }

@@ -100,10 +100,7 @@ void SurfaceStart::describe(const cloud::CloudView& cloud, Described& out) noexc
   for (std::size_t i = 0; i < cells.size(); i += stride) {
     (void)out.samples.append(cells[i].mean);
   }
-  constexpr double kToleranceCells = 0.25;
-  constexpr double kToleranceNoises = 3.0;
-  surfaces_.run(cells, report.cell_mm,
-                std::max(kToleranceCells * report.cell_mm, kToleranceNoises * report.noise_mm));
+  surfaces_.run(cells, report.scale);
   const auto found = surfaces_.surfaces();
   for (std::size_t i = 0; i < found.size(); ++i) {
     enter_pipe(found[i], out);

@@ -101,8 +101,8 @@ class SeamChain {
   std::span<Workspace> work_;
   std::span<float> scratch_;
   seam::JointEdges found_;
+  std::optional<seam::Surface> bore_;
   double tolerance_mm_ = 1.0;
-  double cell_mm_ = 4.0;
 };
 
 }  // namespace dseam::pipeline

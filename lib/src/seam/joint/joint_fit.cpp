@@ -35,9 +35,11 @@ JointFit::JointFit(std::size_t max_points, Arena& arena) noexcept
   nozzle_.residual = ResidualModel(arena);
 }
 
-bool JointFit::run(const cloud::CloudView& cloud, const Joint& found, double spacing_mm,
+bool JointFit::run(const cloud::CloudView& cloud, const Joint& found,
+                   const std::optional<Surface>& bore, double spacing_mm,
                    double tolerance_mm) noexcept {
   joint_ = found;
+  bore_ = bore;
   band_mm_ = std::clamp(0.5 * found.nozzle.radius_mm, 12.0, 28.0) + 2.0 * spacing_mm;
   inner_mm_ = kInnerSpacings * spacing_mm;
   const double round = kTurnRad * found.nozzle.radius_mm / std::max(kPatchMm, 3.0 * spacing_mm);
@@ -73,12 +75,16 @@ void JointFit::select(const cloud::CloudView& cloud, double tolerance_mm) noexce
     const double above = shell_distance(joint_, p);
     const bool on_shell = std::abs(above) < tolerance_mm && outside > 0.0;
     const bool on_nozzle = outside < tolerance_mm && above > 0.0 && above < band_mm_ &&
-                           (above < kBesideMm || i % stride == 0);
+                           (above < kBesideMm || i % stride == 0) && !in_bore(p, outside);
     if ((!on_shell && !on_nozzle) || shell_normal(joint_, p).dot(joint_.nozzle.axis) < -0.1) {
       continue;  // Not near, or where the nozzle's axis leaves the shell on the other side.
     }
     add(p, outside, above, on_shell && (!on_nozzle || outside > above));
   }
+}
+
+bool JointFit::in_bore(const Eigen::Vector3d& p, double outside) const noexcept {
+  return outside < 0.0 && bore_ && std::abs(signed_distance(*bore_, p)) < -outside;
 }
 
 void JointFit::add(const Eigen::Vector3d& p, double outside, double above, bool to_shell) noexcept {

@@ -196,11 +196,13 @@ bool ResidualModel::fit(std::span<const Patch> patches, const PatchGrid& grid) n
     const double p = static_cast<double>(columns.count);
     Row solution;
     const bool simplest = &order == &kOrders.front();
-    if (n < (simplest ? 1.0 : 1.5) * p + 4.0 || !solve(columns, solution)) {
+    const bool enough = simplest ? in_one * n >= 2.0 * p + 4.0 : n >= 1.5 * p + 4.0;
+    if (!enough || !solve(columns, solution)) {
       continue;
     }
     const double rest = squares(columns, solution) / in_one + 1e-12;
-    const double criterion = n * std::log(rest / n) + p * std::log(n) * n / (n - p - 2.0);
+    const double free = std::max(1.0, n - p - 2.0);
+    const double criterion = n * std::log(rest / n) + p * std::log(n) * n / free;
     if (simplest) {
       f.damping = in_one * rest / n / (kExpectedMm * kExpectedMm);
     }
@@ -209,7 +211,7 @@ bool ResidualModel::fit(std::span<const Patch> patches, const PatchGrid& grid) n
       f.valid = true;
       f.columns = columns;
       f.harmonics = std::max(order.constant, order.oval ? 3 : -1);
-      f.variance_mm2 = in_one * rest / (n - p);
+      f.variance_mm2 = in_one * rest / std::max(1.0, n - p);
     }
   }
   return f.valid && solve(f.columns, f.solution);

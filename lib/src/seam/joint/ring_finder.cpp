@@ -10,7 +10,7 @@ namespace dseam::seam {
 namespace {
 
 constexpr double kTurnRad = 2.0 * std::numbers::pi;
-constexpr double kSupportCosine = 0.82;    // 35 degrees: cells at a joint have blurred normals.
+constexpr double kSupportRad = 0.61;       // 35 degrees: cells at a joint have blurred normals.
 constexpr double kMinBinShare = 0.25;      // A ring seen less than this is not listed as one.
 constexpr double kEqualShare = 0.80;       // Scores closer than this are equally good.
 constexpr double kRadiusTolerance = 0.15;  // Of the expected radius.
@@ -41,14 +41,16 @@ int bin_of(double phi_rad) noexcept {
 }
 
 // A cell without a normal holds a bit of both surfaces: at a joint that speaks for it.
-bool lies_along(const Eigen::Vector3d& normal, const Cell& cell) noexcept {
-  return cell.normal.squaredNorm() == 0.0 || std::abs(normal.dot(cell.normal)) > kSupportCosine;
+bool lies_along(const Eigen::Vector3d& normal, const Cell& cell, double cosine) noexcept {
+  return cell.normal.squaredNorm() == 0.0 || std::abs(normal.dot(cell.normal)) > cosine;
 }
 
 Support support_of(std::span<const Cell> cells, const Joint& joint, const NozzleFrame& frame,
-                   double cell_mm, double tolerance_mm) noexcept {
+                   const CellScale& scale) noexcept {
   Support s;
-  const double band = std::max(5.0 * cell_mm, 15.0);
+  const double band = std::max(5.0 * scale.cell_mm, 15.0);
+  const double tolerance_mm = scale.tolerance_mm();
+  const double cosine = std::cos(kSupportRad + scale.slack_rad());
   for (const Cell& cell : cells) {
     if (shell_normal(joint, cell.mean).dot(joint.nozzle.axis) < kOtherSideCosine) {
       continue;  // Where the nozzle's axis leaves the shell on its other side.
@@ -60,9 +62,9 @@ Support support_of(std::span<const Cell> cells, const Joint& joint, const Nozzle
         std::abs(above) < tolerance_mm && outside > tolerance_mm && outside < band;
     const bool on_nozzle = std::abs(outside) < tolerance_mm && std::abs(above) > tolerance_mm &&
                            std::abs(above) < band;
-    if (on_shell && lies_along(outward_normal(joint.shell, cell.mean), cell)) {
+    if (on_shell && lies_along(outward_normal(joint.shell, cell.mean), cell, cosine)) {
       ++s.shell_outside[bin];
-    } else if (on_nozzle && lies_along(outward_normal(joint.nozzle, cell.mean), cell)) {
+    } else if (on_nozzle && lies_along(outward_normal(joint.nozzle, cell.mean), cell, cosine)) {
       ++(above > 0.0 ? s.nozzle_above : s.nozzle_below)[bin];
     }
   }
@@ -88,6 +90,11 @@ bool is_same_wall(const RingCandidate& a, const RingCandidate& b) noexcept {
          std::abs(a.radius_mm - b.radius_mm) < kSameRadiusShare * a.radius_mm;
 }
 
+bool is_bore_of(const RingCandidate& inner, const RingCandidate& outer) noexcept {
+  const double wall = outer.radius_mm - inner.radius_mm;
+  return wall > kMinWallMm && wall < kMaxWallShare * outer.radius_mm && is_coaxial(inner, outer);
+}
+
 // A large ring is seldom backed all round by chance, but easily along a long stretch.
 double merit_of(const RingCandidate& ring) noexcept { return ring.score_mm * ring.coverage; }
 
@@ -110,9 +117,8 @@ RingFate fate_of(const RingCandidate& ring, int num_below, const RingHint& hint,
 }  // namespace
 
 RingFinder::Choice RingFinder::run(std::span<const Cell> cells,
-                                   std::span<const FoundSurface> surfaces, double cell_mm,
-                                   double tolerance_mm, const RingHint& hint,
-                                   SeamReport& report) noexcept {
+                                   std::span<const FoundSurface> surfaces, const CellScale& scale,
+                                   const RingHint& hint, SeamReport& report) noexcept {
   rings_.clear();
   joints_.clear();
   for (const FoundSurface& nozzle : surfaces) {
@@ -125,17 +131,17 @@ RingFinder::Choice RingFinder::run(std::span<const Cell> cells,
         continue;
       }
       Joint joint{shell.surface, nozzle.surface};
-      consider(cells, joint, cell_mm, tolerance_mm, hint);
+      consider(cells, joint, scale, hint);
       joint.nozzle.axis = -joint.nozzle.axis;
       joint.nozzle.slope = -joint.nozzle.slope;
-      consider(cells, joint, cell_mm, tolerance_mm, hint);
+      consider(cells, joint, scale, hint);
     }
   }
   return choose(report);
 }
 
-void RingFinder::consider(std::span<const Cell> cells, const Joint& given, double cell_mm,
-                          double tolerance_mm, const RingHint& hint) noexcept {
+void RingFinder::consider(std::span<const Cell> cells, const Joint& given, const CellScale& scale,
+                          const RingHint& hint) noexcept {
   Joint joint = given;
   if (joint.shell.kind == SurfaceKind::kPlane &&
       joint.shell_sign * joint.shell.axis.dot(joint.nozzle.axis) < 0.0) {
@@ -157,19 +163,23 @@ void RingFinder::consider(std::span<const Cell> cells, const Joint& given, doubl
     roots[static_cast<std::size_t>(i)] = *root;
     ring.centre_base += *root / kBins;
   }
-  const Support support = support_of(cells, joint, frame, cell_mm, tolerance_mm);
+  const Support support = support_of(cells, joint, frame, scale);
   int num_both = 0;
   int num_below = 0;
+  int num_past = 0;
   for (std::size_t i = 0; i < kBins; ++i) {
     const bool both = support.shell_outside[i] > 0 && support.nozzle_above[i] > 0;
     const Eigen::Vector3d step = roots[(i + 1) % kBins] - roots[i];
     ring.score_mm += both ? step.norm() : 0.0;
     num_both += both ? 1 : 0;
     num_below += support.shell_outside[i] > 0 && support.nozzle_below[i] > 0 ? 1 : 0;
+    num_past += support.nozzle_below[i] > 0 && support.shell_outside[i] == 0 ? 1 : 0;
     ring.radius_mm +=
         (roots[i] - joint.nozzle.point).cross(joint.nozzle.axis).norm() / double{kBins};
   }
   ring.coverage = static_cast<double>(num_both) / double{kBins};
+  // Where the wall is seen to go on past the shell, the shell is not what it stands on.
+  ring.score_mm *= std::max(0.0, 1.0 - static_cast<double>(num_past) / std::max(1, num_both));
   ring.axis_base = joint.nozzle.axis;
   ring.shell = joint.shell.kind;
   ring.nozzle = joint.nozzle.kind;
@@ -197,14 +207,22 @@ void RingFinder::keep(const RingCandidate& ring, const Joint& joint) noexcept {
 
 // Inside another ring about the same axis: the joint is on the nozzle's outside, not in its bore.
 bool RingFinder::is_bore(const RingCandidate& ring) const noexcept {
-  for (const RingCandidate& other : rings_.view()) {
-    const double wall = other.radius_mm - ring.radius_mm;
-    if (wall > kMinWallMm && wall < kMaxWallShare * other.radius_mm && is_coaxial(ring, other) &&
-        other.fate == RingFate::kOutscored && kOutside * merit_of(other) > merit_of(ring)) {
-      return true;
+  return std::ranges::any_of(rings_.view(), [&](const RingCandidate& other) {
+    return is_bore_of(ring, other) && other.fate == RingFate::kOutscored &&
+           kOutside * merit_of(other) > merit_of(ring);
+  });
+}
+
+// The largest of them: what lies nearer to it than to the nozzle is not the nozzle's outside.
+std::optional<Surface> RingFinder::bore_of(std::size_t chosen) const noexcept {
+  std::size_t best = chosen;
+  for (std::size_t i = 0; i < rings_.size(); ++i) {
+    const bool larger = best == chosen || rings_[i].radius_mm > rings_[best].radius_mm;
+    if (is_bore_of(rings_[i], rings_[chosen]) && larger) {
+      best = i;
     }
   }
-  return false;
+  return best == chosen ? std::nullopt : std::optional(joints_[best].nozzle);
 }
 
 RingFinder::Choice RingFinder::choose(SeamReport& report) noexcept {
@@ -220,9 +238,9 @@ RingFinder::Choice RingFinder::choose(SeamReport& report) noexcept {
       best = i;
     }
   }
-  Choice choice{elsewhere ? Refusal::kOutsideRegion : Refusal::kNoRing, {}};
+  Choice choice{elsewhere ? Refusal::kOutsideRegion : Refusal::kNoRing, {}, {}};
   if (best != rings_.size()) {
-    choice = {Refusal::kNone, joints_[best]};
+    choice = {Refusal::kNone, joints_[best], bore_of(best)};
     for (std::size_t i = 0; i < rings_.size(); ++i) {
       if (i != best && eligible(i) && !is_same_wall(rings_[i], rings_[best]) &&
           merit_of(rings_[i]) > kEqualShare * merit_of(rings_[best])) {

@@ -20,6 +20,10 @@ constexpr double kMinPointsOfPlane = 6.0;
 constexpr double kOffPlaneCells = 0.35;
 constexpr double kThickCells = 0.15;
 constexpr double kOffPlaneNoises = 3.0;
+constexpr double kSigmaOfMedian = 1.4826;
+constexpr double kToleranceCells = 0.25;
+constexpr double kToleranceScatters = 1.5;
+constexpr double kMaxSlackRad = 0.35;
 
 bool in_range(const Eigen::Vector3d& scaled) noexcept {
   return (scaled.array().abs() < kAxisLimit).all();  // False for NaN.
@@ -31,6 +35,15 @@ std::uint64_t mixed(std::int32_t x, std::int32_t y, std::int32_t z) noexcept {
   h = (h ^ (h >> 29U) ^ bits(y)) * 0xBF58476D1CE4E5B9ULL;
   h = (h ^ (h >> 32U) ^ bits(z)) * 0x94D049BB133111EBULL;
   return h ^ (h >> 31U);
+}
+
+double median_of(std::span<double> values) noexcept {
+  if (values.empty()) {
+    return 0.0;
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 struct PlaneOfMoments {
@@ -54,6 +67,14 @@ PlaneOfMoments plane_of(double n, const Eigen::Vector3d& sum,
 
 }  // namespace
 
+double CellScale::tolerance_mm() const noexcept {
+  return std::max(kToleranceCells * cell_mm, kToleranceScatters * scatter_mm);
+}
+
+double CellScale::slack_rad() const noexcept {
+  return std::min(kMaxSlackRad, scatter_mm / std::max(cell_mm, 1e-6));
+}
+
 CellMap::CellMap(std::size_t max_cells, Arena& arena) noexcept
     : cells_(arena.take<Cell>(max_cells)),
       keys_(arena.take<Key>(max_cells)),
@@ -63,21 +84,22 @@ CellMap::CellMap(std::size_t max_cells, Arena& arena) noexcept
 
 CellMap::Report CellMap::run(const cloud::FusedCloudView& in) noexcept {
   Report report;
-  report.cell_mm = kFirstCellMm;
+  report.scale.cell_mm = kFirstCellMm;
   for (int pass = 0; pass < kMaxPasses; ++pass) {
     fill(in, report);
     if (report.full) {
-      report.cell_mm *= 1.5;
+      report.scale.cell_mm *= 1.5;
       continue;
     }
     estimate_scales(report);
     const double wanted =
         std::max(kSpacingsPerCell * report.spacing_mm, kNoisesPerCell * report.noise_mm);
-    if (report.num_points == 0 || std::abs(wanted - report.cell_mm) < 0.3 * report.cell_mm) {
+    if (report.num_points == 0 ||
+        std::abs(wanted - report.scale.cell_mm) < 0.3 * report.scale.cell_mm) {
       break;
     }
     if (pass + 1 < kMaxPasses) {
-      report.cell_mm = wanted;
+      report.scale.cell_mm = wanted;
     }
   }
   estimate_normals(report);
@@ -96,7 +118,7 @@ void CellMap::fill(const cloud::FusedCloudView& in, Report& report) noexcept {
     if (report.num_points == 0 && p.allFinite()) {
       pivot_ = p;
     }
-    const Eigen::Vector3d scaled = (p - pivot_) / report.cell_mm;
+    const Eigen::Vector3d scaled = (p - pivot_) / report.scale.cell_mm;
     if (!p.allFinite() || !in_range(scaled)) {
       ++report.num_not_finite;
       continue;
@@ -150,7 +172,7 @@ void CellMap::estimate_scales(Report& report) noexcept {
   }
   const double mean_count =
       static_cast<double>(report.num_points) / static_cast<double>(cells_.size());
-  report.spacing_mm = report.cell_mm / std::sqrt(kCellsPerArea * mean_count);
+  report.spacing_mm = report.scale.cell_mm / std::sqrt(kCellsPerArea * mean_count);
   std::size_t n = 0;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     const Moments& m = moments_[i];
@@ -161,18 +183,16 @@ void CellMap::estimate_scales(Report& report) noexcept {
       scratch_[n++] = plane.scatter_mm2;
     }
   }
-  if (n > 0) {
-    const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(n / 2);
-    std::nth_element(scratch_.begin(), middle, scratch_.begin() + static_cast<std::ptrdiff_t>(n));
-    report.noise_mm = std::sqrt(*middle);
-  }
+  report.noise_mm = n > 0 ? std::sqrt(median_of(scratch_.first(n))) : report.noise_mm;
 }
 
 // A neighbour that lies off the cell's own plane belongs to another surface: the bore behind a
 // nozzle's wall. A cell that is thick itself holds two surfaces and has no normal.
-void CellMap::estimate_normals(const Report& report) noexcept {
-  const double off_limit = kOffPlaneCells * report.cell_mm + kOffPlaneNoises * report.noise_mm;
-  const double thick_limit = kThickCells * report.cell_mm + kOffPlaneNoises * report.noise_mm;
+void CellMap::estimate_normals(Report& report) noexcept {
+  std::size_t scattered = 0;
+  const double off_limit =
+      kOffPlaneCells * report.scale.cell_mm + kOffPlaneNoises * report.noise_mm;
+  const double thick_limit = kThickCells * report.scale.cell_mm + kOffPlaneNoises * report.noise_mm;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     const Moments& m = moments_[i];
     Cell& cell = cells_[i];
@@ -187,10 +207,17 @@ void CellMap::estimate_normals(const Report& report) noexcept {
       }
     }
     const Moments around = around_cell(i, own.normal, off_limit);
-    if (around.n >= kMinPointsOfPlane) {
-      cell.normal = plane_of(around.n, around.sum, around.square).normal;
+    if (around.n < kMinPointsOfPlane) {
+      continue;
+    }
+    cell.normal = plane_of(around.n, around.sum, around.square).normal;
+    const double others = around.n - m.n;
+    if (others >= kMinPointsOfPlane) {
+      scratch_[scattered++] =
+          std::abs(cell.normal.dot(m.sum / m.n - (around.sum - m.sum) / others));
     }
   }
+  report.scale.scatter_mm = kSigmaOfMedian * median_of(scratch_.first(scattered));
 }
 
 // The cell's own sums and those of its neighbours on the same plane; all, where it has no plane.

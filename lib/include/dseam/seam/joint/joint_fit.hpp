@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "dseam/base/arena.hpp"
@@ -47,8 +48,10 @@ class JointFit {
   JointFit(std::size_t max_points, Arena& arena) noexcept;
 
   /// False when one of the surfaces has too few points near the joint.
-  bool run(const cloud::CloudView& cloud, const Joint& found, double spacing_mm,
-           double tolerance_mm) noexcept;
+  ///
+  /// `bore` is the inside of the nozzle's wall, if it was seen: its points are not the outside's.
+  bool run(const cloud::CloudView& cloud, const Joint& found, const std::optional<Surface>& bore,
+           double spacing_mm, double tolerance_mm) noexcept;
 
   [[nodiscard]] const Joint& joint() const noexcept { return joint_; }
   [[nodiscard]] const NozzleFrame& frame() const noexcept { return frame_; }
@@ -82,7 +85,10 @@ class JointFit {
   double scale_of(const Side& side) noexcept;
   std::size_t collect_patches(const Side& side, double cut_mm) noexcept;
 
+  [[nodiscard]] bool in_bore(const Eigen::Vector3d& p, double outside) const noexcept;
+
   Joint joint_;
+  std::optional<Surface> bore_;
   NozzleFrame frame_;
   Eigen::Vector3d pivot_ = Eigen::Vector3d::Zero();
   double band_mm_ = 0.0;

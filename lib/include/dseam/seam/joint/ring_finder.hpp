@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "dseam/base/arena.hpp"
@@ -34,6 +35,7 @@ class RingFinder {
   struct Choice {
     Refusal refusal = Refusal::kNoRing;
     Joint joint;
+    std::optional<Surface> bore;  ///< The inside of the nozzle's wall, if it was seen.
   };
 
   [[nodiscard]] static constexpr std::size_t bytes() noexcept {
@@ -43,15 +45,16 @@ class RingFinder {
   explicit RingFinder(Arena& arena) noexcept
       : rings_(arena.take<RingCandidate>(kMaxRings)), joints_(arena.take<Joint>(kMaxRings)) {}
 
-  Choice run(std::span<const Cell> cells, std::span<const FoundSurface> surfaces, double cell_mm,
-             double tolerance_mm, const RingHint& hint, SeamReport& report) noexcept;
+  Choice run(std::span<const Cell> cells, std::span<const FoundSurface> surfaces,
+             const CellScale& scale, const RingHint& hint, SeamReport& report) noexcept;
 
  private:
   static constexpr std::size_t kMaxRings = 64;
-  void consider(std::span<const Cell> cells, const Joint& joint, double cell_mm,
-                double tolerance_mm, const RingHint& hint) noexcept;
+  void consider(std::span<const Cell> cells, const Joint& joint, const CellScale& scale,
+                const RingHint& hint) noexcept;
   void keep(const RingCandidate& ring, const Joint& joint) noexcept;
   [[nodiscard]] bool is_bore(const RingCandidate& ring) const noexcept;
+  [[nodiscard]] std::optional<Surface> bore_of(std::size_t chosen) const noexcept;
   Choice choose(SeamReport& report) noexcept;
 
   Buffer<RingCandidate> rings_;

@@ -20,6 +20,19 @@ struct Cell {
   cloud::ViewMask seen_by = 0;
 };
 
+/// How well the cells of a cloud can be told apart.
+struct CellScale {
+  double cell_mm = 0.0;
+  /// Of a cell's mean about the plane of those around it: what noise has in common over a cell,
+  /// and what the views disagree about.
+  double scatter_mm = 0.0;
+
+  /// How far a cell may lie off its surface, the surface's own deviations included.
+  [[nodiscard]] double tolerance_mm() const noexcept;
+  /// How much more the normal of a cell may be off than that of an exact one.
+  [[nodiscard]] double slack_rad() const noexcept;
+};
+
 /// Cuts a cloud into cubes whose size follows the cloud's own spacing and noise, and finds the
 /// normal of each. Everything coarse works on these few thousand pieces instead of on points.
 ///
@@ -33,7 +46,7 @@ class CellMap {
     std::uint32_t num_points = 0;
     std::uint32_t num_not_finite = 0;  ///< Or further than 2^20 cells from the first point.
     bool full = false;                 ///< Even the coarsest cells were too many.
-    double cell_mm = 0.0;
+    CellScale scale;
     double spacing_mm = 0.0;
     double noise_mm = 0.0;  ///< Median scatter of points about their own cell's plane.
     double extent_mm = 0.0;
@@ -62,7 +75,7 @@ class CellMap {
   bool add(const Key& key, const Eigen::Vector3d& p, cloud::ViewMask seen_by) noexcept;
   std::uint32_t find_slot(const Key& key) const noexcept;
   void estimate_scales(Report& report) noexcept;
-  void estimate_normals(const Report& report) noexcept;
+  void estimate_normals(Report& report) noexcept;
   [[nodiscard]] Moments around_cell(std::size_t i, const Eigen::Vector3d& normal,
                                     double off_limit_mm) const noexcept;
 
