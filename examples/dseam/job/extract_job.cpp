@@ -64,7 +64,6 @@ void ExtractJob::by_paper(const Settings& settings, const LoadedCloud& cloud, St
   pipeline::PaperPipeline::Config config = settings.paper;
   config.point_spacing_mm = settings.seam.point_spacing_mm;
   config.min_coverage = settings.seam.min_coverage;
-  config.max_rms_mm = settings.seam.max_sigma_mm;
   auto chain = pipeline::PaperPipeline::make(config, max_points, memory_->arena());
   if (!chain.ok()) {
     throw Failure(ExitCode::kUsage,

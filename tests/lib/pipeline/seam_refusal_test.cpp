@@ -149,6 +149,22 @@ TEST(SeamRefusal, a_seam_less_certain_than_asked_for_is_named) {
   EXPECT_EQ(finder.find(JointCloud(paper_joint())).refusal, Refusal::kUncertain);
 }
 
+// The shell begins farther from the joint than the nozzle does, and no edge is seen between them.
+TEST(SeamRefusal, a_gap_that_nobody_saw_the_edge_of_is_too_uncertain_to_weld) {
+  JointCloudConfig config = paper_joint();
+  config.spacing_mm = 0.6;
+  config.shell_reach_mm = 45.0;
+  config.dead_band_mm = 2.1;
+  config.gap_mm = 3.0;
+  SeamFinder finder;
+
+  const SeamReport report = finder.find(JointCloud(config));
+
+  EXPECT_EQ(report.refusal, Refusal::kUncertain);
+  EXPECT_FALSE(report.joint.has_gap);
+  EXPECT_GE(report.joint.hidden_gap_mm, 2.0);
+}
+
 TEST(SeamRefusal, more_points_beside_the_joint_than_there_is_room_for_are_named) {
   const JointCloud cloud(paper_joint());
   const SeamChain::Capacity little{.max_points = 3000, .max_edge_intervals = 1000};

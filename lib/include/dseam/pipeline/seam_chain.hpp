@@ -54,7 +54,7 @@ class SeamChain {
     seam::ReferenceCurve reference = seam::ReferenceCurve::kShellEdge;
     double min_coverage = 0.80;
     double max_hole_rad = 1.0471975511965976;  ///< 60 degrees.
-    double max_sigma_mm = 1.0;
+    double max_sigma_mm = 0.3;  ///< Of every measured point: medium confidence at least.
     double point_spacing_mm = 0.5;
     double start_angle_rad = 0.0;     ///< About the nozzle's axis, from base x laid into the ring.
     bool counter_clockwise = true;    ///< Seen from the nozzle's free end.

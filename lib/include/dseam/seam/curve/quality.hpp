@@ -13,7 +13,7 @@ namespace dseam::seam {
 struct QualityLimits {
   double min_coverage = 0.80;
   double max_hole_rad = 1.0471975511965976;  ///< 60 degrees.
-  double max_sigma_mm = 1.0;
+  double max_sigma_mm = 0.3;
 };
 
 /// High: measured and both sigmas at most 0.1 mm. Medium: measured and at most 0.3 mm, or in a hole
