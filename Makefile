@@ -11,7 +11,7 @@ THREADED = rt_core_test rt_linux_test candump_test socketcan_test fake_camera_te
 CYCLE = rt_core_test rt_session_test link_test
 INSTALL = cmake/install_packages.sh
 
-.PHONY: demo test check check-long cross sanitize fuzz bench test-vm configure build clean
+.PHONY: demo test check check-long coverage cross sanitize fuzz bench test-vm configure build clean
 
 demo: build
 	$(BUILD)/examples/dseam/dseam weld --camera sim --robot sim --out $(OUT)
@@ -59,6 +59,13 @@ fuzz:
 	for t in tests/fuzz/corpus/*; do t=$$(basename $$t); mkdir -p build/fuzz/$$t; \
 	  build/host-fuzz/tests/fuzz/$$t -max_total_time=$(FUZZ_SECONDS) -rss_limit_mb=2048 \
 	    -artifact_prefix=build/fuzz/ build/fuzz/$$t tests/fuzz/corpus/$$t || exit 1; done
+
+# Every branch of the weld session and its gates, by their own tests.
+coverage:
+	@$(INSTALL) quick coverage
+	cmake --preset host-coverage
+	cmake --build --preset host-coverage -j $(JOBS) --target rt_core_test rt_session_test
+	tests/rt/check_coverage.sh build/host-coverage
 
 # Both other processors: aarch64 under qemu-user, and lib/ on a bare Cortex-M7 without a heap.
 cross:

@@ -15,7 +15,9 @@ declare -A packages=(
   [cross]="g++-aarch64-linux-gnu qemu-user googletest gcc-arm-none-eabi libnewlib-arm-none-eabi
            libstdc++-arm-none-eabi-dev qemu-system-arm"
   # make bench: the peers
-  [bench]="libpcl-dev libopencv-dev libnanoflann-dev libbenchmark-dev valgrind gcovr"
+  [bench]="libpcl-dev libopencv-dev libnanoflann-dev libbenchmark-dev valgrind"
+  # make coverage
+  [coverage]="gcovr"
   # make test-vm: a guest with real kernel drivers
   [vm]="qemu-system-x86 busybox-static iproute2"
   # preset host-rtsan

@@ -7,6 +7,7 @@
 #include <array>
 #include <thread>
 
+#include "dseam/hal/camera_monitor.hpp"
 #include "hal/v4l2/fake_v4l2_sys.hpp"
 
 namespace dseam::hal::v4l2 {
@@ -35,16 +36,22 @@ class V4l2CameraTest : public ::testing::Test {
     EXPECT_FALSE(camera.ok());
     return camera.ok() ? Errc::kIo : camera.error();
   }
-  static int frames_in(DepthCamera& camera, int attempts) {
+  /// Takes frames and has each judged as a consumer does.
+  int frames_in(DepthCamera& camera, int attempts) {
     int frames = 0;
     for (int i = 0; i < attempts; ++i) {
-      frames += camera.next(10ms).ok() ? 1 : 0;
+      const auto lease = camera.next(10ms);
+      const std::int64_t now_ns = std::chrono::steady_clock::now().time_since_epoch().count();
+      frames += lease.ok() ? 1 : 0;
+      (void)(lease.ok() ? monitor_.on_frame(lease.value().frame(), now_ns)
+                        : monitor_.on_absence(lease.error(), now_ns));
     }
     return frames;
   }
 
   V4l2Config config_;
   std::string problem_;
+  CameraMonitor monitor_{{}};
 };
 
 TEST_F(V4l2CameraTest, a_driver_that_answers_with_another_format_is_refused) {
@@ -142,17 +149,18 @@ TEST_F(V4l2CameraTest, fewer_buffers_than_asked_for_will_do_but_one_will_not) {
   EXPECT_EQ(refusal(one), Errc::kOutOfMemory);
 }
 
-/// A fault of the vocabulary, and the counter or the state that it must end in.
+/// A fault of the vocabulary, and the camera's counter or the consumer's verdict that it ends in.
 struct FaultCase {
   const char* name;
   DeviceFault fault;
   std::uint64_t CameraHealth::*counter;
   std::uint64_t at_least;
+  CameraVerdict verdict = CameraVerdict::kGood;
 };
 
 class V4l2Fault : public V4l2CameraTest, public ::testing::WithParamInterface<FaultCase> {};
 
-TEST_P(V4l2Fault, ends_in_its_counter_and_good_frames_follow) {
+TEST_P(V4l2Fault, ends_in_its_counter_or_verdict_and_good_frames_follow) {
   FakeV4l2Sys sys;
   const auto camera = open(sys);
   const std::array<FaultStep, 3> script{
@@ -164,22 +172,25 @@ TEST_P(V4l2Fault, ends_in_its_counter_and_good_frames_follow) {
 
   EXPECT_GE(frames, 8);
   EXPECT_GE(camera->health().*GetParam().counter, GetParam().at_least);
+  EXPECT_GE(monitor_.counted(GetParam().verdict), 1U);
   EXPECT_TRUE(sys.script_done());
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Vocabulary, V4l2Fault,
     ::testing::Values(FaultCase{"off", DeviceFault::kOff, &CameraHealth::lost, 5},
-                      FaultCase{"stuck", DeviceFault::kStuck, &CameraHealth::delivered, 15},
+                      FaultCase{"stuck", DeviceFault::kStuck, &CameraHealth::delivered, 15,
+                                CameraVerdict::kStuck},
                       FaultCase{"garbage", DeviceFault::kGarbage, &CameraHealth::damaged, 5},
                       FaultCase{"wrong", DeviceFault::kWrong, &CameraHealth::damaged, 5},
-                      FaultCase{"delayed", DeviceFault::kDelayed, &CameraHealth::delivered, 15},
+                      FaultCase{"delayed", DeviceFault::kDelayed, &CameraHealth::delivered, 15,
+                                CameraVerdict::kStale},
                       FaultCase{"intermittent", DeviceFault::kIntermittent, &CameraHealth::lost, 2},
                       FaultCase{"lost", DeviceFault::kLost, &CameraHealth::lost, 5},
                       FaultCase{"truncated", DeviceFault::kTruncated, &CameraHealth::damaged, 5},
                       FaultCase{"unplugged", DeviceFault::kUnplugged, &CameraHealth::reconnects, 1},
-                      FaultCase{"clock_jump", DeviceFault::kClockJump, &CameraHealth::delivered,
-                                15}),
+                      FaultCase{"clock_jump", DeviceFault::kClockJump, &CameraHealth::delivered, 15,
+                                CameraVerdict::kClockJump}),
     [](const auto& row) { return std::string(row.param.name); });
 
 TEST_F(V4l2CameraTest, a_time_stamp_in_the_future_or_long_past_never_leaves_the_present) {

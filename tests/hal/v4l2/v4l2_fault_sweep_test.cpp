@@ -28,7 +28,9 @@ V4l2Config config() {
 /// What became of one session in which a call failed.
 struct Outcome {
   bool opened = false;
-  bool named = false;   ///< A refusal came with words.
+  bool named = false;  ///< A refusal came with words.
+  /// After it was opened: frames, or an error from start() or next(), or a counter or a state.
+  bool told = false;
   int torn_frames = 0;  ///< Frames whose bytes do not belong together.
 };
 
@@ -42,7 +44,8 @@ Outcome live(FakeV4l2Sys& sys) {
   }
   V4l2Camera& camera = *opened.value();
   for (const FrameMode mode : {FrameMode::kEvery, FrameMode::kLatest}) {
-    (void)camera.start(mode);
+    const bool started = camera.start(mode).ok();
+    outcome.told = outcome.told || !started;
     FrameLease held;
     for (int i = 0; i < 4; ++i) {
       auto lease = camera.next(2ms);
@@ -51,9 +54,13 @@ Outcome live(FakeV4l2Sys& sys) {
         outcome.torn_frames += bytes.front() != bytes.back() ? 1 : 0;
         held = std::move(lease.value());
       }
+      outcome.told = outcome.told || lease.ok() || lease.error() == Errc::kDisconnected;
     }
+    outcome.told = outcome.told || camera.state() == V4l2State::kLost;
     camera.stop();
   }
+  const CameraHealth health = camera.health();
+  outcome.told = outcome.told || health.damaged + health.reconnects + health.lost > 0;
   return outcome;
 }
 
@@ -74,6 +81,7 @@ TEST_P(V4l2FaultSweep, every_call_may_fail_with_every_error_and_nothing_leaks) {
 
       injected += sys.num_injected();
       ASSERT_TRUE(outcome.opened || outcome.named) << "call " << n << " errno " << error;
+      ASSERT_TRUE(!outcome.opened || outcome.told) << "call " << n << " errno " << error;
       ASSERT_EQ(outcome.torn_frames, 0) << "call " << n << " errno " << error;
       ASSERT_EQ(sys.num_open(), 0U) << "call " << n << " errno " << error;
       ASSERT_EQ(sys.num_mapped(), 0U) << "call " << n << " errno " << error;
