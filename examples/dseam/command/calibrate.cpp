@@ -12,7 +12,7 @@
 #include "files/output_folder.hpp"
 #include "input/pose_pairs.hpp"
 #include "report/text.hpp"
-#include "scan/marker_stations.hpp"
+#include "scan/pose/marker_stations.hpp"
 
 namespace dseam::program {
 namespace {

@@ -103,12 +103,17 @@ ExitCode run(const Options& options, const Invocation& invocation) {
                   "job.method = \"paper\" works on a merged cloud: dseam extract has it");
   }
   check_robot(options.robot, options.waive_operator);
+  if (options.robot.starts_with("can:") && settings.camera.pose_interface.empty() &&
+      !options.hand_eye.empty()) {
+    settings.camera.pose_interface =
+        options.robot.substr(4);  // Who moves the camera can say where.
+  }
   const auto T_flange_camera = hand_eye_of(options, settings);
   OutputFolder folder(options.out);
   const std::atomic<bool>& interrupted = watch_for_interrupt();
   Progress progress;
   Stopwatch watch;
-  const auto source = open_scan(options.camera, settings);
+  auto source = open_scan(options.camera, settings);
   if (!options.truth.empty()) {
     write_truth_of(*source, options.truth);
   }
@@ -119,6 +124,7 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   JobReport job;
   job.command = "weld";
   job.input = source->description() + ", robot " + options.robot;
+  source.reset();  // From here on nobody else talks to the robot.
   job.stages.push_back({"scan", watch.lap_ms(), {{"views", static_cast<double>(views.size())}}});
   progress.say("finding the seam");
   ScanJob scan(settings, views);

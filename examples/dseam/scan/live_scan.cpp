@@ -6,7 +6,8 @@
 
 #include "dseam/hal/paired_camera.hpp"
 #include "failure.hpp"
-#include "scan/taught_poses.hpp"
+#include "scan/pose/link_poses.hpp"
+#include "scan/pose/taught_poses.hpp"
 #ifdef DSEAM_HAS_ARAVIS
 #include "dseam/hal/aravis/aravis_camera.hpp"
 #endif
@@ -24,13 +25,16 @@ template <typename Camera>
 class LiveScan final : public ScanSource {
  public:
   LiveScan(std::unique_ptr<Camera> camera, std::unique_ptr<Camera> gray, std::string name,
-           const LiveSettings& settings)
+           const LiveSettings& settings, const link::Sender::Config& link)
       : camera_(std::move(camera)),
         gray_(std::move(gray)),
         name_(std::move(name)),
         poses_(settings.poses) {
     num_views_ = settings.views;
     settle_ = std::chrono::duration<double>(settings.settle_s);
+    if (!poses_.known() && !settings.pose_interface.empty()) {
+      robot_.emplace(settings.pose_interface, link);
+    }
     if (gray_ != nullptr) {
       constexpr std::int64_t kApartNs = 20'000'000;
       both_.emplace(*camera_, *gray_, kApartNs);
@@ -40,7 +44,17 @@ class LiveScan final : public ScanSource {
   hal::DepthCamera& camera() override {
     return both_ ? static_cast<hal::DepthCamera&>(*both_) : *camera_;
   }
-  hal::RobotState* robot_state() override { return poses_.known() ? &poses_ : nullptr; }
+  hal::RobotState* robot_state() override {
+    if (robot_) {
+      return &robot_->state();
+    }
+    return poses_.known() ? &poses_ : nullptr;
+  }
+  void await_report(std::int64_t stamp_ns) override {
+    if (robot_) {
+      robot_->await(stamp_ns);
+    }
+  }
   [[nodiscard]] std::size_t num_views() const override { return num_views_; }
   [[nodiscard]] std::string description() const override { return name_; }
 
@@ -59,6 +73,7 @@ class LiveScan final : public ScanSource {
   std::optional<hal::PairedCamera> both_;
   std::string name_;
   TaughtPoses poses_;
+  std::optional<ListeningToRobot> robot_;
   std::size_t num_views_ = 0;
   std::chrono::duration<double> settle_{0.0};
 };
@@ -72,15 +87,33 @@ std::unique_ptr<Camera> camera_of(Result<std::unique_ptr<Camera>> camera, const 
   return std::move(camera.value());
 }
 
+void check_pair(const hal::DepthCamera& camera, const hal::DepthCamera& gray,
+                const std::string& name) {
+  if (!hal::PairedCamera::check(camera, gray).ok()) {
+    throw Failure(ExitCode::kDevice, name + ": its image is not of the size of the depth's");
+  }
+}
+
 #ifdef DSEAM_HAS_ARAVIS
-std::unique_ptr<ScanSource> open_aravis(const std::string& id, const LiveSettings& settings) {
-  using hal::aravis::AravisCamera;
+std::unique_ptr<hal::aravis::AravisCamera> open_genicam(const std::string& id, bool gray) {
   hal::aravis::AravisConfig config;
   config.id = id;
+  config.gray = gray;
   std::string problem;
-  const std::string name = "aravis:" + id;
-  auto camera = camera_of(AravisCamera::open(config, problem), name, problem);
-  return std::make_unique<LiveScan<AravisCamera>>(std::move(camera), nullptr, name, settings);
+  return camera_of(hal::aravis::AravisCamera::open(config, problem), "aravis:" + id, problem);
+}
+
+std::unique_ptr<ScanSource> open_aravis(const std::string& id, const LiveSettings& settings,
+                                        const link::Sender::Config& link) {
+  using hal::aravis::AravisCamera;
+  auto camera = open_genicam(id, false);
+  std::unique_ptr<AravisCamera> gray;
+  if (!settings.gray_device.empty()) {
+    gray = open_genicam(settings.gray_device, true);
+    check_pair(*camera, *gray, "aravis:" + settings.gray_device);
+  }
+  return std::make_unique<LiveScan<AravisCamera>>(std::move(camera), std::move(gray),
+                                                  "aravis:" + id, settings, link);
 }
 #endif
 
@@ -105,38 +138,38 @@ std::unique_ptr<hal::v4l2::V4l2Camera> open_node(const std::string& device, bool
                    "v4l2:" + device, problem);
 }
 
-std::unique_ptr<ScanSource> open_v4l2(const std::string& device, const LiveSettings& settings) {
+std::unique_ptr<ScanSource> open_v4l2(const std::string& device, const LiveSettings& settings,
+                                      const link::Sender::Config& link) {
   using hal::v4l2::V4l2Camera;
   auto camera = open_node(device, false, settings);
   std::unique_ptr<V4l2Camera> gray;
   if (!settings.gray_device.empty()) {
     gray = open_node(settings.gray_device, true, settings);
-    if (!hal::PairedCamera::check(*camera, *gray).ok()) {
-      throw Failure(ExitCode::kDevice, "v4l2:" + settings.gray_device +
-                                           ": its image is not of the size of the depth's");
-    }
+    check_pair(*camera, *gray, "v4l2:" + settings.gray_device);
   }
   return std::make_unique<LiveScan<V4l2Camera>>(std::move(camera), std::move(gray),
-                                                "v4l2:" + device, settings);
+                                                "v4l2:" + device, settings, link);
 }
 #endif
 
 }  // namespace
 
 std::unique_ptr<ScanSource> open_live_scan(const std::string& kind, const std::string& id,
-                                           const LiveSettings& settings) {
+                                           const LiveSettings& settings,
+                                           const link::Sender::Config& link) {
 #ifdef DSEAM_HAS_ARAVIS
   if (kind == "aravis") {
-    return open_aravis(id, settings);
+    return open_aravis(id, settings, link);
   }
 #endif
 #ifdef DSEAM_HAS_V4L2
   if (kind == "v4l2") {
-    return open_v4l2(id, settings);
+    return open_v4l2(id, settings, link);
   }
 #endif
   throw Failure(ExitCode::kUsage, kind + ":" + id + ": this backend was not built (" +
-                                      std::to_string(settings.views) + " views asked for)");
+                                      std::to_string(settings.views) + " views asked for, link " +
+                                      std::to_string(link.addressing.base_id) + ")");
 }
 
 std::vector<hal::CameraInfo> list_all_cameras() {

@@ -19,7 +19,7 @@ std::unique_ptr<ScanSource> open_scan(const std::string& camera, const Settings&
     return std::make_unique<ReplayScan>(which);
   }
   if ((kind == "aravis" || kind == "v4l2") && !which.empty()) {
-    return open_live_scan(kind, which, settings.camera);
+    return open_live_scan(kind, which, settings.camera, settings.session.link);
   }
   throw Failure(ExitCode::kUsage,
                 "--camera " + camera + ": sim, replay:SET, aravis:ID or v4l2:DEV is meant");

@@ -63,6 +63,7 @@ std::vector<ScannedView> take_views(ScanSource& source,
     }
     decode(decoder.value(), lease.value().frame(), views[i]);
     if (source.robot_state() != nullptr) {
+      source.await_report(views[i].captured_ns);
       add_pose(*source.robot_state(), T_flange_camera, views[i]);
     }
   }

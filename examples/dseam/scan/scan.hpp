@@ -40,6 +40,8 @@ class ScanSource {
   [[nodiscard]] virtual hal::DepthCamera& camera() = 0;
   /// Called before each view, with the camera started: a frame taken from then on is of that view.
   virtual void await_view() {}
+  /// Called before the pose at `stamp_ns` is asked for: waits until it can be known, but not long.
+  virtual void await_report(std::int64_t /*stamp_ns*/) {}
   /// nullptr when nobody says where the camera was.
   [[nodiscard]] virtual hal::RobotState* robot_state() = 0;
   [[nodiscard]] virtual std::size_t num_views() const = 0;

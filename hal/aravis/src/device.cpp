@@ -42,10 +42,12 @@ std::string device_id_of(const std::string& named) {
 
 Result<> apply_settings(ArvCamera* camera, const AravisConfig& config, std::string& problem) {
   GlibError error;
-  if (!config.pixel_format.empty()) {
-    arv_camera_set_pixel_format_from_string(camera, config.pixel_format.c_str(), error.out());
+  const std::string format =
+      config.gray && config.pixel_format.empty() ? "Mono8" : config.pixel_format;
+  if (!format.empty()) {
+    arv_camera_set_pixel_format_from_string(camera, format.c_str(), error.out());
     if (error) {
-      problem = "it has no pixel format " + config.pixel_format + " (" + error.text() + ")";
+      problem = "it has no pixel format " + format + " (" + error.text() + ")";
       return Errc::kUnsupported;
     }
   }
@@ -171,15 +173,18 @@ Result<Device> connect(const AravisConfig& config, std::string& problem) {
   if (const auto applied = apply_settings(camera, config, problem); !applied.ok()) {
     return applied.error();
   }
-  auto model = read_depth_model(camera, config.assumed_model, problem);
+  auto model = config.gray ? read_gray_model(camera, problem)
+                           : read_depth_model(camera, config.assumed_model, problem);
   if (!model.ok()) {
     return model.error();
   }
   device.model = model.value();
+  device.image_bytes =
+      config.gray ? depth::gray_bytes(device.model) : depth::depth_bytes(device.model);
   device.payload_bytes = arv_camera_get_payload(camera, error.out());
   const double rate_hz = arv_camera_get_frame_rate(camera, error.out());
   device.period_s = rate_hz > 0.01 ? 1.0 / rate_hz : device.period_s;
-  if (device.payload_bytes < depth::depth_bytes(device.model)) {
+  if (device.payload_bytes < device.image_bytes) {
     problem = "its payload of " + std::to_string(device.payload_bytes) +
               " bytes cannot hold the image it describes";
     return Errc::kBadData;

@@ -37,7 +37,8 @@ struct Device {
   ObjectPtr<ArvCamera> camera;
   ObjectPtr<ArvStream> stream;
   depth::DepthModel model;
-  std::size_t payload_bytes = 0;
+  std::size_t payload_bytes = 0;  ///< What the device sends a frame,
+  std::size_t image_bytes = 0;    ///< and what of it is needed.
   double period_s = 1.0 / 30.0;
   bool is_gige = false;
   AravisGrant grant;

@@ -119,7 +119,7 @@ void read_optics(const Features& device, depth::DepthModel& model) {
   }
 }
 
-Result<> read_image(ArvCamera* camera, depth::DepthModel& model, std::string& problem) {
+Result<> read_size(ArvCamera* camera, depth::DepthModel& model, std::string& problem) {
   GlibError error;
   gint width = 0;
   gint height = 0;
@@ -128,6 +128,16 @@ Result<> read_image(ArvCamera* camera, depth::DepthModel& model, std::string& pr
     problem = "the camera did not tell its image size: " + error.text();
     return Errc::kIo;
   }
+  model.intrinsics.width = static_cast<std::uint32_t>(width);
+  model.intrinsics.height = static_cast<std::uint32_t>(height);
+  return {};
+}
+
+Result<> read_image(ArvCamera* camera, depth::DepthModel& model, std::string& problem) {
+  if (const auto size = read_size(camera, model, problem); !size.ok()) {
+    return size;
+  }
+  GlibError error;
   const ArvPixelFormat code = arv_camera_get_pixel_format(camera, error.out());
   const auto format = depth::format_from_pfnc(code);
   if (error || !format.ok()) {
@@ -136,8 +146,6 @@ Result<> read_image(ArvCamera* camera, depth::DepthModel& model, std::string& pr
               " is no depth format; ask for one with camera.pixel_format, such as Coord3D_C16";
     return Errc::kUnsupported;
   }
-  model.intrinsics.width = static_cast<std::uint32_t>(width);
-  model.intrinsics.height = static_cast<std::uint32_t>(height);
   model.format = format.value();
   return {};
 }
@@ -168,6 +176,20 @@ Result<depth::DepthModel> read_depth_model(ArvCamera* camera,
         "baseline, output mode); give what is missing in the configuration";
     return Errc::kUnsupported;
   }
+  return model;
+}
+
+Result<depth::DepthModel> read_gray_model(ArvCamera* camera, std::string& problem) {
+  depth::DepthModel model;
+  if (const auto size = read_size(camera, model, problem); !size.ok()) {
+    return size.error();
+  }
+  GlibError error;
+  if (arv_camera_get_pixel_format(camera, error.out()) != ARV_PIXEL_FORMAT_MONO_8 || error) {
+    problem = "its image is not gray with one byte a pixel; ask for Mono8";
+    return Errc::kUnsupported;
+  }
+  model.has_gray = true;
   return model;
 }
 

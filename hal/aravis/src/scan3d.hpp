@@ -19,4 +19,9 @@ Result<depth::DepthModel> read_depth_model(ArvCamera* camera,
                                            const std::optional<depth::DepthModel>& assumed,
                                            std::string& problem);
 
+/// The same of a camera whose image is gray, with one byte a pixel.
+///
+/// Errors:  kUnsupported: it is not Mono8. kIo: the device did not answer.
+Result<depth::DepthModel> read_gray_model(ArvCamera* camera, std::string& problem);
+
 }  // namespace dseam::hal::aravis

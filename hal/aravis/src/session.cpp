@@ -28,6 +28,7 @@ AravisCamera::Session::Session(const AravisConfig& config, Device device)
     : config_(config),
       active_(config),
       model_(device.model),
+      image_bytes_(device.image_bytes),
       device_(std::move(device)),
       sequence_(device_.is_gige || config.id.starts_with("Fake") ? 1 : 0,
                 device_.is_gige || config.id.starts_with("Fake") ? 65535 : UINT64_MAX >> 1U) {}
@@ -143,7 +144,7 @@ void AravisCamera::Session::begin_acquisition(std::uint32_t request) {
   acquired_request_ = request;
   seen_ = frames_seen();
   proven_ = false;
-  progress_at_ = Clock::now();
+  begun_at_ = progress_at_ = Clock::now();
   state_ = acquiring_ ? AravisState::kStreaming : AravisState::kLost;
   {
     const std::lock_guard lock(mutex_);
@@ -199,9 +200,10 @@ void AravisCamera::Session::judge_silence(double silent_s) {
   constexpr double kLeastS = 0.5;
   constexpr std::uint32_t kSafePacketBytes = 1400;
   const std::chrono::duration<double> first_frame = config_.first_frame;
+  // The small packets at both ends of a frame get through: it is not silent, but never whole.
+  const std::chrono::duration<double> tried = Clock::now() - begun_at_;
   const bool path_too_narrow = device_.is_gige && !proven_ && config_.packet_bytes == 0 &&
-                               device_.grant.packet_bytes > kSafePacketBytes &&
-                               silent_s > first_frame.count();
+                               device_.grant.packet_bytes > kSafePacketBytes && tried > first_frame;
   if (path_too_narrow) {
     active_.packet_bytes = kSafePacketBytes;
     disconnect();

@@ -72,6 +72,7 @@ class AravisCamera::Session {
   const AravisConfig config_;
   AravisConfig active_;  ///< With what was learned, such as a smaller packet.
   depth::DepthModel model_;
+  std::size_t image_bytes_;
   Device device_;
   FramePool pool_;
   CameraCounters counters_;
@@ -105,6 +106,7 @@ class AravisCamera::Session {
   std::uint32_t acquired_request_ = 0;
   std::uint64_t seen_ = 0;
   bool proven_ = false;
+  Clock::time_point begun_at_;
   Clock::time_point progress_at_;
   Pcg32 jitter_{0x5eed};
   std::thread control_;

@@ -111,17 +111,19 @@ bool AravisCamera::Session::is_whole(ArvBuffer* buffer) const noexcept {
   }
   std::size_t size = 0;
   (void)arv_buffer_get_data(buffer, &size);
-  const auto format = depth::format_from_pfnc(arv_buffer_get_image_pixel_format(buffer));
+  const ArvPixelFormat code = arv_buffer_get_image_pixel_format(buffer);
+  const auto format = depth::format_from_pfnc(code);
+  const bool as_agreed = config_.gray ? code == ARV_PIXEL_FORMAT_MONO_8
+                                      : format.ok() && format.value() == model_.format;
   // Aravis' own fake reports no size at all.
-  return (size == 0 || size >= depth::depth_bytes(model_)) && format.ok() &&
-         format.value() == model_.format &&
+  return (size == 0 || size >= image_bytes_) && as_agreed &&
          std::cmp_equal(arv_buffer_get_image_width(buffer), model_.intrinsics.width) &&
          std::cmp_equal(arv_buffer_get_image_height(buffer), model_.intrinsics.height);
 }
 
 DepthFrame AravisCamera::Session::frame_of(ArvBuffer* buffer) noexcept {
   DepthFrame frame;
-  frame.depth = {pool_.slot(slot_of(buffer)), pool_.payload_bytes()};
+  (config_.gray ? frame.gray : frame.depth) = {pool_.slot(slot_of(buffer)), pool_.payload_bytes()};
   frame.device_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
   frame.dequeued_ns = monotonic_ns();
   frame.captured_ns = std::max(last_captured_ns_, frame.dequeued_ns - age_ns(buffer));

@@ -1,17 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/aravis/fake_gige_camera.hpp"
 
+#include <dlfcn.h>
 #include <net/if.h>
 #include <sched.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <bit>
 #include <cstring>
 #include <fstream>
 
+namespace {
+
+constexpr std::size_t kNarrowBytes = 1500;
+std::atomic<bool> narrow_path{false};
+
+}  // namespace
+
+/// Stands before the C library's, for GLib too.
+extern "C" ssize_t sendmsg(int fd, const msghdr* message, int flags) {
+  using Send = ssize_t (*)(int, const msghdr*, int);
+  static const Send send = reinterpret_cast<Send>(dlsym(RTLD_NEXT, "sendmsg"));  // NOLINT
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < message->msg_iovlen; ++i) {
+    size += message->msg_iov[i].iov_len;
+  }
+  return narrow_path && size > kNarrowBytes ? static_cast<ssize_t>(size) : send(fd, message, flags);
+}
+
 namespace dseam::test {
+
+void narrow_the_path(bool narrow) { narrow_path = narrow; }
+
 namespace {
 
 constexpr std::uint32_t kScaleAddress = 0x1000;   // A, B, C, as 64-bit floats

@@ -13,6 +13,10 @@ namespace dseam::test {
 /// beside each other. Where that is not permitted, the computer's loopback is used.
 void enter_private_network();
 
+/// From now on packets of more than 1500 bytes vanish on their way, as on a path with a switch that
+/// knows no jumbo frames; smaller ones arrive.
+void narrow_the_path(bool narrow);
+
 /// What the fake camera's description says of its 3D data.
 struct FakeScan3d {
   std::uint32_t width = 320;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/taught_poses.hpp"
+#include "scan/pose/taught_poses.hpp"
 
 #include <gtest/gtest.h>
 

@@ -24,6 +24,7 @@ void fail_if(const std::optional<hal::replay::LoadFault>& fault) {
 }
 
 void record_view(ScanSource& source, hal::replay::Recorder& recorder) {
+  source.await_view();
   const auto lease = source.camera().next(std::chrono::seconds(5));
   if (!lease.ok()) {
     throw Failure(ExitCode::kDevice, source.description() + ": no frame: " + name(lease.error()));
@@ -31,6 +32,7 @@ void record_view(ScanSource& source, hal::replay::Recorder& recorder) {
   const hal::DepthFrame& frame = lease.value().frame();
   std::optional<hal::StampedPose> pose;
   if (source.robot_state() != nullptr) {
+    source.await_report(frame.captured_ns);
     const auto reported = source.robot_state()->pose_at(frame.captured_ns);
     pose = reported.ok() ? std::optional(reported.value()) : std::nullopt;
   }

@@ -18,6 +18,8 @@ namespace dseam::hal::aravis {
 struct AravisConfig {
   std::string id;  ///< Serial number, Aravis' device id or address. "Fake_1": Aravis' own fake.
   std::string pixel_format;
+  /// A camera of gray images, Mono8, to be joined to another's depth by PairedCamera.
+  bool gray = false;
   double frame_rate_hz = 0.0;
   std::uint32_t num_buffers = 8;
   std::uint32_t packet_bytes = 0;  ///< 0: as large as the path carries, found at open.

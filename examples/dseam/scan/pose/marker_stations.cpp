@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scan/marker_stations.hpp"
+#include "scan/pose/marker_stations.hpp"
 
 #include <string>
 
