@@ -81,7 +81,7 @@ void choose_packet_size(Device& device, const AravisConfig& config) {
   }
   device.grant.packet_bytes = arv_camera_gv_get_packet_size(camera, error.out());
   constexpr std::uint32_t kJumbo = 8000;
-  if (config.packet_bytes == 0 && device.grant.packet_bytes < kJumbo) {
+  if (device.grant.packet_bytes < kJumbo) {
     device.grant.notes.push_back("packets of " + std::to_string(device.grant.packet_bytes) +
                                  " bytes: set the network card's MTU to 9000 "
                                  "(ip link set IFACE mtu 9000)");

@@ -202,7 +202,7 @@ void AravisCamera::Session::judge_silence(double silent_s) {
   const std::chrono::duration<double> first_frame = config_.first_frame;
   // The small packets at both ends of a frame get through: it is not silent, but never whole.
   const std::chrono::duration<double> tried = Clock::now() - begun_at_;
-  const bool path_too_narrow = device_.is_gige && !proven_ && config_.packet_bytes == 0 &&
+  const bool path_too_narrow = device_.is_gige && !proven_ &&
                                device_.grant.packet_bytes > kSafePacketBytes && tried > first_frame;
   if (path_too_narrow) {
     active_.packet_bytes = kSafePacketBytes;

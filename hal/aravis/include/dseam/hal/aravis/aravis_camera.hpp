@@ -27,7 +27,7 @@ struct AravisConfig {
   int receive_priority = 0;      ///< SCHED_FIFO priority of Aravis' receiving thread.
   double stalled_periods = 3.0;  ///< Without a frame: kStalled.
   double lost_periods = 10.0;    ///< Without a frame, and at least 500 ms: reconnect.
-  std::chrono::milliseconds first_frame{1000};  ///< Then smaller packets are tried.
+  std::chrono::milliseconds first_frame{1000};  ///< Then packets of 1400 bytes are tried.
   /// Used when the device itself describes no 3D data; width, height and format are the device's.
   std::optional<depth::DepthModel> assumed_model;
 };
