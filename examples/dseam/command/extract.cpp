@@ -71,6 +71,8 @@ void add_extract(CLI::App& app, Invocation& invocation) {
   auto* command = app.add_subcommand("extract", "seam of clouds that are already in one frame");
   auto options = std::make_shared<Options>();
   command->add_option("cloud", options->clouds, "PLY or PCD files")->required();
+  command->add_option("--seam", invocation.seam, "a ring, or the line between two plates")
+      ->check(CLI::IsMember({"closed", "open"}));
   command->add_option("--out", options->out, "folder for the results")->required();
   command->callback([options, &invocation] {
     invocation.run = [options](const Invocation& invoked) { return run(*options, invoked); };

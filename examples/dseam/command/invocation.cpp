@@ -19,6 +19,9 @@ void Invocation::configure(Settings& settings) const {
   if (!method.empty()) {
     set_key("job.method = \"" + method + '"', keys);
   }
+  if (!seam.empty()) {
+    set_key("seam.kind = \"" + seam + '"', keys);
+  }
   check_against_gates(settings);
 }
 

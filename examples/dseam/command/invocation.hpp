@@ -18,6 +18,7 @@ struct Invocation {
   std::string unit = "mm";
   std::string reference;  ///< Empty: as configured.
   std::string method;     ///< Empty: as configured.
+  std::string seam;       ///< Closed or open; empty: as configured.
   std::function<ExitCode(const Invocation&)> run;
 
   /// Millimetres in one unit of the clouds read.

@@ -98,6 +98,9 @@ ExitCode weld_seam(const Options& options, const Settings& settings, OutputFolde
 ExitCode run(const Options& options, const Invocation& invocation) {
   Settings settings;
   invocation.configure(settings);
+  if (settings.shape == SeamShape::kOpen) {
+    throw Failure(ExitCode::kUsage, "open seams are found in a merged cloud: use dseam extract");
+  }
   if (settings.method == Method::kPaper) {
     throw Failure(ExitCode::kUsage,
                   "job.method = \"paper\" works on a merged cloud: dseam extract has it");

@@ -22,8 +22,11 @@ std::vector<Key> job_keys(Settings& s) {
        64, 1e6}};
 }
 
-std::vector<Key> seam_keys(pipeline::SeamChain::Config& c) {
+std::vector<Key> seam_keys(Settings& s) {
+  pipeline::SeamChain::Config& c = s.seam;
   return {
+      {"seam", "kind", choice(s.shape, {"closed", "open"}),
+       "A ring round a nozzle, or the open line between two plates (extract)"},
       {"seam", "reference",
        choice(c.reference, {"shell_edge", "root", "gap_middle", "nozzle_edge"}),
        "Which curve of the joint is the seam"},
@@ -175,7 +178,7 @@ void append(std::vector<Key>& keys, const std::vector<Key>& more) {
 std::vector<Key> keys_of(Settings& settings) {
   std::vector<Key> keys = job_keys(settings);
   append(keys, map_keys(settings.pipeline));
-  append(keys, seam_keys(settings.seam));
+  append(keys, seam_keys(settings));
   append(keys, choice_keys(settings.ring));
   append(keys, paper_keys(settings.paper));
   append(keys, scanner_keys(settings));

@@ -19,6 +19,9 @@ namespace dseam::program {
 
 enum class Method : std::uint8_t { kDseam, kPaper };
 
+/// What `extract` looks for: a ring round a nozzle, or the line between two plates.
+enum class SeamShape : std::uint8_t { kClosed, kOpen };
+
 /// The paper's values, with boxes so wide that nothing lies beyond.
 [[nodiscard]] pipeline::PaperPipeline::Config unconstrained_paper();
 
@@ -35,6 +38,7 @@ struct RingChoice {
 /// Everything that can be configured, in the structs that the stages are made from.
 struct Settings {
   Method method = Method::kDseam;
+  SeamShape shape = SeamShape::kClosed;
   std::uint32_t max_points = 4'000'000;
   std::uint32_t max_seam_points = 16384;
   std::uint32_t max_voxels = 600'000;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "dseam/pipeline/open_seam_chain.hpp"
 #include "failure.hpp"
 #include "report/curve_report.hpp"
 #include "report/verdict.hpp"
@@ -31,18 +32,20 @@ ExtractJob::ExtractJob(const Settings& settings, const LoadedCloud& cloud, Stopw
   job.cloud_base.points = cloud.view();
   if (settings.method == Method::kPaper) {
     by_paper(settings, cloud, watch, job);
+  } else if (settings.shape == SeamShape::kOpen) {
+    by_chain<pipeline::OpenSeamChain>(settings, cloud, watch, job);
   } else {
-    by_dseam(settings, cloud, watch, job);
+    by_chain<pipeline::SeamChain>(settings, cloud, watch, job);
   }
   job.weld = job.seam_report.weld();
 }
 
-void ExtractJob::by_dseam(const Settings& settings, const LoadedCloud& cloud, Stopwatch& watch,
+template <typename Chain>
+void ExtractJob::by_chain(const Settings& settings, const LoadedCloud& cloud, Stopwatch& watch,
                           JobReport& job) {
-  const pipeline::SeamChain::Capacity capacity{.max_points =
-                                                   std::max(kLeastCapacity, cloud.size())};
-  memory_ = std::make_unique<LentMemory>(pipeline::SeamChain::bytes(capacity));
-  auto chain = pipeline::SeamChain::make(settings.seam, capacity, memory_->arena());
+  const typename Chain::Capacity capacity{.max_points = std::max(kLeastCapacity, cloud.size())};
+  memory_ = std::make_unique<LentMemory>(Chain::bytes(capacity));
+  auto chain = Chain::make(settings.seam, capacity, memory_->arena());
   if (!chain.ok()) {
     throw Failure(ExitCode::kUsage,
                   std::string("the configured seam stage: ") + name(chain.error()));

@@ -20,7 +20,8 @@ class ExtractJob {
   ExtractJob(const Settings& settings, const LoadedCloud& cloud, Stopwatch& watch, JobReport& job);
 
  private:
-  void by_dseam(const Settings& settings, const LoadedCloud& cloud, Stopwatch& watch,
+  template <typename Chain>
+  void by_chain(const Settings& settings, const LoadedCloud& cloud, Stopwatch& watch,
                 JobReport& job);
   void by_paper(const Settings& settings, const LoadedCloud& cloud, Stopwatch& watch,
                 JobReport& job);

@@ -118,6 +118,7 @@ Json seam_json(const JobReport& job) {
           {"reference", kReferences[static_cast<std::size_t>(report.reference)]},
           {"closed", report.closed},
           {"length_mm", report.length_mm},
+          {"end_sigma_mm", report.end_sigma_mm},
           {"points", job.seam_base.points.size()},
           {"cloud_points", report.num_points},
           {"cloud_points_not_finite", report.num_not_finite},

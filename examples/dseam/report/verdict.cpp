@@ -51,6 +51,10 @@ std::string reason_of(const seam::SeamReport& report, const pipeline::SeamChain:
              " mm only; " + fixed(rule.max_sigma_mm, 3) + " mm are asked for";
     case Refusal::kFull:
       return "the workspace is too small for this seam";
+    case Refusal::kNoSeam:
+      return "no two surfaces meet in an open seam";
+    case Refusal::kTwoSeams:
+      return "two open seams are equally good; the report shows both";
   }
   return seam::name(report.refusal);
 }

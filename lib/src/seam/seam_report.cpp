@@ -7,7 +7,7 @@ const char* name(Refusal refusal) noexcept {
   constexpr const char* kNames[] = {"None",        "EmptyCloud", "NotMillimetres",  "Coplanar",
                                     "OneSurface",  "NoRing",     "OutsideRegion",   "TwoRings",
                                     "LowCoverage", "LargeHole",  "NoSuchReference", "Uncertain",
-                                    "Full"};
+                                    "Full",        "NoSeam",     "TwoSeams"};
   return kNames[static_cast<std::uint8_t>(refusal)];
 }
 
@@ -32,6 +32,7 @@ bool is_fault_of_input(Refusal refusal) noexcept {
     case Refusal::kOutsideRegion:
     case Refusal::kNoSuchReference:
     case Refusal::kFull:
+    case Refusal::kNoSeam:
       return true;
     default:
       return false;

@@ -26,6 +26,8 @@ enum class Refusal : std::uint8_t {
   kNoSuchReference,  ///< The joint does not have the reference curve that was asked for.
   kUncertain,        ///< The predicted sigma exceeds `max_sigma_mm` on the measured part.
   kFull,             ///< The output or a work buffer is too small for this seam.
+  kNoSeam,           ///< An open seam was asked for; no two surfaces meet in one.
+  kTwoSeams,         ///< Two open seams are equally good; `candidates` has both.
 };
 
 /// The name without its `k`, for reports.
@@ -118,8 +120,9 @@ struct SeamReport {
   ReferenceCurve reference = ReferenceCurve::kShellEdge;
   bool closed = false;
   double length_mm = 0.0;
-  double noise_mm = 0.0;    ///< Scatter of the cloud's points about their surface.
-  double spacing_mm = 0.0;  ///< Of the cloud's points.
+  double end_sigma_mm = 0.0;  ///< Of an open seam's two ends, along it.
+  double noise_mm = 0.0;      ///< Scatter of the cloud's points about their surface.
+  double spacing_mm = 0.0;    ///< Of the cloud's points.
   std::uint32_t num_points = 0;
   std::uint32_t num_not_finite = 0;
   std::uint32_t num_surfaces = 0;

@@ -118,6 +118,18 @@ void describe_residuals(const JointFit& fit, std::span<float> scratch,
   quality.lateral = stats_of(fit, fit.nozzle(), false, scratch);
 }
 
+void describe_widths(std::span<const SeamPoint> points, JointReport& report) noexcept {
+  const double n = std::max(1.0, static_cast<double>(points.size()));
+  for (const SeamPoint& point : points) {
+    report.mean_gap_mm += point.gap_mm / n;
+    report.max_gap_mm = std::max(report.max_gap_mm, point.gap_mm);
+    report.mean_mismatch_mm += point.mismatch_mm / n;
+    report.max_mismatch_mm = std::max(report.max_mismatch_mm, point.mismatch_mm);
+  }
+  report.has_gap = report.mean_gap_mm > kMinGapMm;
+  report.has_nozzle_edge = report.mean_mismatch_mm > kMinGapMm;
+}
+
 void describe_curve(std::span<const SeamPoint> points, SeamReport& report) noexcept {
   SeamQuality& q = report.quality;
   q.num_by_confidence = {};

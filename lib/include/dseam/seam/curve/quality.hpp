@@ -29,6 +29,8 @@ bool describe_mismatch(const EdgeCurve& edge, JointReport& report) noexcept;
 /// the nozzle lateral.
 void describe_residuals(const JointFit& fit, std::span<float> scratch,
                         SeamQuality& quality) noexcept;
+/// Mean and largest of the widths that the points have.
+void describe_widths(std::span<const SeamPoint> points, JointReport& report) noexcept;
 /// Coverage, sigmas and confidences of the finished curve.
 void describe_curve(std::span<const SeamPoint> points, SeamReport& report) noexcept;
 /// kNone, or the first limit that is not kept.
