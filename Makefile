@@ -11,7 +11,7 @@ THREADED = rt_core_test rt_linux_test candump_test socketcan_test fake_camera_te
 CYCLE = rt_core_test rt_session_test link_test
 INSTALL = cmake/install_packages.sh
 
-.PHONY: demo test check check-long coverage cross sanitize fuzz bench test-vm configure build clean
+.PHONY: demo test check check-long coverage cross sanitize fuzz bench paper-tables test-vm configure build clean
 
 demo: build
 	$(BUILD)/examples/dseam/dseam weld --camera sim --robot sim --out $(OUT)
@@ -81,9 +81,17 @@ BENCH = build/$(PRESET)-bench
 bench:
 	@$(INSTALL) quick bench
 	cmake --preset $(PRESET) -B $(BENCH) -DDSEAM_BUILD_BENCH=ON
-	cmake --build $(BENCH) -j $(JOBS) --target core_bench seam_bench
+	cmake --build $(BENCH) -j $(JOBS) --target core_bench seam_bench splice_bench
 	$(BENCH)/tests/bench/core_bench --benchmark_repetitions=3
 	$(BENCH)/tests/bench/seam_bench
+	$(BENCH)/tests/bench/splice_bench
+
+# The paper's Tables 4, 5 and 6 beside the same quantities here: minutes.
+paper-tables:
+	@$(INSTALL) quick bench
+	cmake --preset $(PRESET) -B $(BENCH) -DDSEAM_BUILD_BENCH=ON
+	cmake --build $(BENCH) -j $(JOBS) --target paper_tables
+	$(BENCH)/tests/bench/paper_tables
 
 # The campaigns and soaks that `make test` leaves out: hours.
 check-long: build
