@@ -15,7 +15,7 @@ using seam::Refusal;
 using seam::RingFate;
 
 constexpr double kEqualShare = 0.75;  // Of the best one's score: no choice to be made.
-constexpr double kSameSeamMm = 4.0;  // Two fits of one wall; the two faces of a plate are farther.
+constexpr double kSameSeamMm = 4.0;   // Two fits of one wall; the two faces of a plate are farther.
 constexpr double kSlitStepMm = 2.0;
 
 seam::RingCandidate shown(const OpenCandidate& found) noexcept {
@@ -93,9 +93,9 @@ bool OpenSeamChain::find_surfaces(const SeamInput& in, seam::SeamReport& report)
   if (report.refusal != Refusal::kNone) {
     return false;
   }
-  cell_mm_ = cells.cell_mm;
+  cell_mm_ = cells.scale.cell_mm;
   tolerance_mm_ = tolerance_mm_of(cells);
-  surfaces_.run(cells_.cells(), cell_mm_, tolerance_mm_);
+  surfaces_.run(cells_.cells(), cells.scale);
   report.num_surfaces = static_cast<std::uint32_t>(surfaces_.surfaces().size());
   report.refusal = report.num_surfaces == 0 ? Refusal::kOneSurface : Refusal::kNone;
   return report.num_surfaces > 0;

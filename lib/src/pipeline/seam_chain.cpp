@@ -7,19 +7,12 @@
 #include <numbers>
 
 #include "dseam/seam/curve/quality.hpp"
+#include "pipeline/seam_scales.hpp"
 
 namespace dseam::pipeline {
 namespace {
 
 using seam::Refusal;
-
-constexpr std::size_t kPointsPerCell = 2;  // Fewer on average, and the cells grow instead.
-constexpr double kMinExtentMm = 3.0;       // A whole part smaller than this came in metres.
-constexpr double kToleranceNoises = 3.0;
-
-std::size_t num_cells(const SeamChain::Capacity& capacity) noexcept {
-  return std::max<std::size_t>(1024, capacity.max_points / kPointsPerCell);
-}
 
 bool is_valid(const SeamChain::Config& c) noexcept {
   return c.min_coverage >= 0.0 && c.min_coverage <= 1.0 && c.max_hole_rad >= 0.0 &&
@@ -28,8 +21,6 @@ bool is_valid(const SeamChain::Config& c) noexcept {
          c.scanner_sigma_mm >= 0.0 && std::isfinite(c.scanner_sigma_mm) &&
          std::isfinite(c.hand_eye_sigma_mm);
 }
-
-using Viewpoints = std::array<Eigen::Vector3d, cloud::kMaxViews>;
 
 std::span<const Eigen::Vector3d> viewpoints_of(std::span<const splice::SplicedView> views,
                                                Viewpoints& storage) noexcept {
@@ -54,23 +45,6 @@ seam::RingHint hint_of(const SeamInput& in, Viewpoints& storage) noexcept {
   return hint;
 }
 
-// How far the fused surface may be displaced at `p` because the views' poses are not exact: about
-// half of the views see any one place.
-double pose_sigma_of(std::span<const splice::SplicedView> views,
-                     const Eigen::Vector3d& p) noexcept {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const splice::SplicedView& view : views) {
-    if (view.state == splice::ViewState::kUsed) {
-      Eigen::Matrix<double, 3, 6> move;
-      move << Eigen::Matrix3d::Identity(), -geometry::skew(p);
-      sum += (move * view.covariance * move.transpose()).trace() / 3.0;
-      count += 1.0;
-    }
-  }
-  return count > 0.0 ? std::sqrt(sum / count / std::max(1.0, 0.5 * count)) : 0.0;
-}
-
 Refusal too_few_surfaces(std::span<const seam::FoundSurface> surfaces) noexcept {
   const bool plane = !surfaces.empty() && surfaces[0].surface.kind == seam::SurfaceKind::kPlane;
   return surfaces.size() == 1 && plane ? Refusal::kCoplanar : Refusal::kOneSurface;
@@ -79,7 +53,7 @@ Refusal too_few_surfaces(std::span<const seam::FoundSurface> surfaces) noexcept 
 }  // namespace
 
 std::size_t SeamChain::bytes(const Capacity& capacity) noexcept {
-  const std::size_t cells = num_cells(capacity);
+  const std::size_t cells = num_seam_cells(capacity);
   return seam::CellMap::bytes(cells) + seam::SurfaceFinder::bytes(cells) +
          seam::RingFinder::bytes() + seam::JointFit::bytes(capacity.max_points) +
          seam::EdgeScanner::bytes(capacity.max_edge_intervals) + Arena::bytes<Workspace>(1) +
@@ -88,8 +62,8 @@ std::size_t SeamChain::bytes(const Capacity& capacity) noexcept {
 
 SeamChain::SeamChain(const Config& config, const Capacity& capacity, Arena& arena) noexcept
     : config_(config),
-      cells_(num_cells(capacity), arena),
-      surfaces_(num_cells(capacity), arena),
+      cells_(num_seam_cells(capacity), arena),
+      surfaces_(num_seam_cells(capacity), arena),
       rings_(arena),
       fit_(capacity.max_points, arena),
       edges_(capacity.max_edge_intervals, arena),
@@ -122,18 +96,11 @@ seam::SeamReport SeamChain::run(const SeamInput& in, Buffer<seam::SeamPoint>& ou
 bool SeamChain::find_joint(const SeamInput& in, seam::SeamReport& report,
                            seam::Joint& joint) noexcept {
   const seam::CellMap::Report cells = cells_.run(in.cloud_base);
-  report.num_points = cells.num_points;
-  report.num_not_finite = cells.num_not_finite;
-  report.noise_mm = cells.noise_mm;
-  report.spacing_mm = cells.spacing_mm;
-  report.refusal = cells.num_points == 0            ? Refusal::kEmptyCloud
-                   : cells.full                     ? Refusal::kFull
-                   : cells.extent_mm < kMinExtentMm ? Refusal::kNotMillimetres
-                                                    : Refusal::kNone;
+  report.refusal = enter_cells(cells, report);
   if (report.refusal != Refusal::kNone) {
     return false;
   }
-  tolerance_mm_ = std::max(cells.scale.tolerance_mm(), kToleranceNoises * cells.noise_mm);
+  tolerance_mm_ = tolerance_mm_of(cells);
   surfaces_.run(cells_.cells(), cells.scale);
   const auto surfaces = surfaces_.surfaces();
   report.num_surfaces = static_cast<std::uint32_t>(surfaces.size());

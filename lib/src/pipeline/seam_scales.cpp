@@ -10,7 +10,6 @@ using seam::Refusal;
 
 constexpr std::size_t kPointsPerCell = 2;  // Fewer on average, and the cells grow instead.
 constexpr double kMinExtentMm = 3.0;       // A whole part smaller than this came in metres.
-constexpr double kToleranceCells = 0.25;
 constexpr double kToleranceNoises = 3.0;
 
 }  // namespace
@@ -31,7 +30,7 @@ Refusal enter_cells(const seam::CellMap::Report& cells, seam::SeamReport& report
 }
 
 double tolerance_mm_of(const seam::CellMap::Report& cells) noexcept {
-  return std::max(kToleranceCells * cells.cell_mm, kToleranceNoises * cells.noise_mm);
+  return std::max(cells.scale.tolerance_mm(), kToleranceNoises * cells.noise_mm);
 }
 
 std::span<const Eigen::Vector3d> all_viewpoints(std::span<const splice::SplicedView> views,
