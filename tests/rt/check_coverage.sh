@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # check_coverage.sh BUILD: runs the tests of session and gates in a build with --coverage and fails
 # unless every branch of rt/core was taken both ways. Branches that only an exception could take
 # do not count: there are none in rt.

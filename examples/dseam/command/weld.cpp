@@ -95,7 +95,8 @@ ExitCode weld_seam(const Options& options, const Settings& settings, OutputFolde
   return ExitCode::kDone;
 }
 
-ExitCode run(const Options& options, const Invocation& invocation) {
+/// The configuration and what the command line adds to it; refused where no weld can follow it.
+Settings settings_of(const Options& options, const Invocation& invocation) {
   Settings settings;
   invocation.configure(settings);
   if (settings.shape == SeamShape::kOpen) {
@@ -105,12 +106,17 @@ ExitCode run(const Options& options, const Invocation& invocation) {
     throw Failure(ExitCode::kUsage,
                   "job.method = \"paper\" works on a merged cloud: dseam extract has it");
   }
-  check_robot(options.robot, options.waive_operator);
   if (options.robot.starts_with("can:") && settings.camera.pose_interface.empty() &&
       !options.hand_eye.empty()) {
     settings.camera.pose_interface =
         options.robot.substr(4);  // Who moves the camera can say where.
   }
+  return settings;
+}
+
+ExitCode run(const Options& options, const Invocation& invocation) {
+  Settings settings = settings_of(options, invocation);
+  check_robot(options.robot, options.waive_operator);
   const auto T_flange_camera = hand_eye_of(options, settings);
   OutputFolder folder(options.out);
   const std::atomic<bool>& interrupted = watch_for_interrupt();

@@ -148,6 +148,29 @@ Result<> FramePool::map(std::uint32_t slots, std::size_t payload_bytes) {
   return {};
 }
 
+/// Reads what the camera says of its images, and whether that can be.
+Result<> describe(Device& device, const AravisConfig& config, std::string& problem) {
+  ArvCamera* camera = device.camera.get();
+  auto model = config.gray ? read_gray_model(camera, problem)
+                           : read_depth_model(camera, config.assumed_model, problem);
+  if (!model.ok()) {
+    return model.error();
+  }
+  GlibError error;
+  device.model = model.value();
+  device.image_bytes =
+      config.gray ? depth::gray_bytes(device.model) : depth::depth_bytes(device.model);
+  device.payload_bytes = arv_camera_get_payload(camera, error.out());
+  const double rate_hz = arv_camera_get_frame_rate(camera, error.out());
+  device.period_s = rate_hz > 0.01 ? 1.0 / rate_hz : device.period_s;
+  if (device.payload_bytes < device.image_bytes) {
+    problem = "its payload of " + std::to_string(device.payload_bytes) +
+              " bytes cannot hold the image it describes";
+    return Errc::kBadData;
+  }
+  return {};
+}
+
 Result<Device> connect(const AravisConfig& config, std::string& problem) {
   if (config.id.starts_with("Fake")) {
     arv_enable_interface("Fake");
@@ -173,21 +196,8 @@ Result<Device> connect(const AravisConfig& config, std::string& problem) {
   if (const auto applied = apply_settings(camera, config, problem); !applied.ok()) {
     return applied.error();
   }
-  auto model = config.gray ? read_gray_model(camera, problem)
-                           : read_depth_model(camera, config.assumed_model, problem);
-  if (!model.ok()) {
-    return model.error();
-  }
-  device.model = model.value();
-  device.image_bytes =
-      config.gray ? depth::gray_bytes(device.model) : depth::depth_bytes(device.model);
-  device.payload_bytes = arv_camera_get_payload(camera, error.out());
-  const double rate_hz = arv_camera_get_frame_rate(camera, error.out());
-  device.period_s = rate_hz > 0.01 ? 1.0 / rate_hz : device.period_s;
-  if (device.payload_bytes < device.image_bytes) {
-    problem = "its payload of " + std::to_string(device.payload_bytes) +
-              " bytes cannot hold the image it describes";
-    return Errc::kBadData;
+  if (const auto described = describe(device, config, problem); !described.ok()) {
+    return described.error();
   }
   return device;
 }

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # check.sh MODEL.pml: searches every state of the model; prints what spin found. Where the model
 # has mutants, each of them breaks one of its rules, and the search must find that.
 # SPDX-License-Identifier: Apache-2.0

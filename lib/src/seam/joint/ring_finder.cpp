@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace dseam::seam {
 namespace {
@@ -43,6 +44,23 @@ int bin_of(double phi_rad) noexcept {
 // A cell without a normal holds a bit of both surfaces: at a joint that speaks for it.
 bool lies_along(const Eigen::Vector3d& normal, const Cell& cell, double cosine) noexcept {
   return cell.normal.squaredNorm() == 0.0 || std::abs(normal.dot(cell.normal)) > cosine;
+}
+
+using Roots = std::array<Eigen::Vector3d, RingFinder::kBins>;
+
+// Where the two surfaces meet around the nozzle; nothing unless they do all the way, at an angle.
+std::optional<Roots> roots_of(const Joint& joint, const NozzleFrame& frame) noexcept {
+  Roots roots;
+  for (std::size_t i = 0; i < roots.size(); ++i) {
+    const double phi_rad = (static_cast<double>(i) + 0.5) * kTurnRad / RingFinder::kBins;
+    const auto root = root_at(joint, frame, phi_rad);
+    if (!root || std::abs(shell_normal(joint, *root).dot(outward_normal(joint.nozzle, *root))) >
+                     kMinJointCosine) {
+      return std::nullopt;
+    }
+    roots[i] = *root;
+  }
+  return roots;
 }
 
 Support support_of(std::span<const Cell> cells, const Joint& joint, const NozzleFrame& frame,
@@ -152,22 +170,18 @@ void RingFinder::consider(std::span<const Cell> cells, const Joint& given, const
     return;  // Nobody saw the shell from that side.
   }
   const NozzleFrame frame = frame_of(joint.nozzle);
-  std::array<Eigen::Vector3d, kBins> roots;
-  RingCandidate ring;
-  for (int i = 0; i < kBins; ++i) {
-    const auto root = root_at(joint, frame, (i + 0.5) * kTurnRad / kBins);
-    if (!root || std::abs(shell_normal(joint, *root).dot(outward_normal(joint.nozzle, *root))) >
-                     kMinJointCosine) {
-      return;  // Not closed.
-    }
-    roots[static_cast<std::size_t>(i)] = *root;
-    ring.centre_base += *root / kBins;
+  const auto closed = roots_of(joint, frame);
+  if (!closed) {
+    return;
   }
+  const Roots& roots = *closed;
+  RingCandidate ring;
   const Support support = support_of(cells, joint, frame, scale);
   int num_both = 0;
   int num_below = 0;
   int num_past = 0;
   for (std::size_t i = 0; i < kBins; ++i) {
+    ring.centre_base += roots[i] / kBins;
     const bool both = support.shell_outside[i] > 0 && support.nozzle_above[i] > 0;
     const Eigen::Vector3d step = roots[(i + 1) % kBins] - roots[i];
     ring.score_mm += both ? step.norm() : 0.0;
