@@ -95,8 +95,11 @@ paper-tables:
 
 # The campaigns and soaks that `make test` leaves out: hours.
 check-long: build
-	@$(INSTALL) vm
+	@$(INSTALL) vm bench
 	ctest --preset $(PRESET) -L long
+	cmake --preset $(PRESET) -B $(BENCH) -DDSEAM_BUILD_BENCH=ON
+	cmake --build $(BENCH) -j $(JOBS) --target core_oracle core_effort
+	ctest --test-dir $(BENCH) --output-on-failure -R '^bench[.]'
 
 test-vm: build
 	@$(INSTALL) vm
