@@ -29,12 +29,14 @@ TrueScan::TrueScan(const hal::sim::Cell& cell) : renderings_(cell.views().size()
 }
 
 FusedScan::FusedScan(const hal::sim::Cell& cell, const TrueScan& scan, float cell_mm,
-                     float reach_mm)
+                     float reach_mm, float max_step_mm)
     : scan_(scan),
       owner_(cloud::VoxelMap::bytes(kMaxCells) +
              cloud::FrameFuser::bytes(cell.config().scanner.width)),
       map_(cloud::VoxelMap::make({.cell_mm = cell_mm}, kMaxCells, owner_.arena()).value()) {
-  auto fuser = cloud::FrameFuser::make({}, cell.config().scanner.width, owner_.arena()).value();
+  auto fuser = cloud::FrameFuser::make({.max_step_mm = max_step_mm}, cell.config().scanner.width,
+                                       owner_.arena())
+                   .value();
   fuser.set_box(box_about(cell.config().T_base_part.translation_mm.cast<float>(), reach_mm));
   for (std::size_t i = 0; i < scan.frames().size(); ++i) {
     (void)fuser.run({scan.frames()[i], scan.views()[i].T_base_camera, i, {}}, map_);

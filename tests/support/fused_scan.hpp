@@ -26,11 +26,13 @@ class TrueScan {
 
 /// The frames fused into cells of `cell_mm`, and all that the seam is sought in.
 ///
+/// Pixels that fly by `max_step_mm` are left out; 0 keeps all.
+///
 /// Frame:   base; a box of `reach_mm` each way round the part's origin is kept.
 class FusedScan {
  public:
   FusedScan(const hal::sim::Cell& cell, const TrueScan& scan, float cell_mm = 1.0F,
-            float reach_mm = 130.0F);
+            float reach_mm = 130.0F, float max_step_mm = 0.0F);
 
   [[nodiscard]] pipeline::SeamInput input();
 

@@ -8,6 +8,7 @@
 namespace dseam::seam {
 namespace {
 
+constexpr double kWideMm = 30.0;        // So wide a side counts in full.
 constexpr double kBandMm = 15.0;        // Of cells beside the seam.
 constexpr double kTouchingCells = 2.5;  // Within this both sides must begin.
 constexpr double kUnseenMm = 60.0;      // A longer stretch without cells ends the walk.
@@ -46,7 +47,7 @@ void FilletFinder::gather(std::span<const Cell> cells, const OpenJoint& joint,
                                   signed_distance(joint.surface[1], cell.mean)};
     for (std::size_t side = 0; side < 2; ++side) {
       if (std::abs(d[side]) < scale.tolerance_mm && std::abs(d[1 - side]) > scale.tolerance_mm &&
-          std::abs(d[1 - side]) < kBandMm) {
+          std::abs(d[1 - side]) < kWideMm) {
         (void)near_.append({cell.mean, static_cast<std::uint8_t>(side), d[1 - side], cell.seen_by});
       }
     }
@@ -183,17 +184,21 @@ void FilletFinder::trace(const OpenJoint& joint, const Scale& scale) noexcept {
   track_.finish();
 }
 
-// How wide a side is beside the seam: the rim of a plate is no wider than the plate is thick.
+// How wide a side is beside the seam, by the spread of its cells: the rim of a plate is no wider
+// than the plate is thick.
 double FilletFinder::width_of(std::size_t side) noexcept {
-  double least = 1e9;
-  double most = 0.0;
+  double count = 0.0;
+  double sum = 0.0;
+  double squares = 0.0;
   for (const NearCell& cell : near_.view()) {
     if (cell.side == side) {
-      least = std::min(least, cell.away_mm);
-      most = std::max(most, cell.away_mm);
+      count += 1.0;
+      sum += cell.away_mm;
+      squares += cell.away_mm * cell.away_mm;
     }
   }
-  return std::max(0.0, most - least);
+  const double mean = sum / std::max(1.0, count);
+  return std::sqrt(12.0 * std::max(0.0, squares / std::max(1.0, count) - mean * mean));
 }
 
 std::optional<OpenCandidate> FilletFinder::consider(std::span<const Cell> cells, OpenJoint joint,
@@ -216,7 +221,7 @@ std::optional<OpenCandidate> FilletFinder::consider(std::span<const Cell> cells,
   }
   candidate.length_mm = track.length_mm();
   candidate.coverage = both / static_cast<double>(track.stations().size());
-  const double width = std::min(width_of(0), width_of(1)) / (kBandMm - scale.tolerance_mm);
+  const double width = std::min(width_of(0), width_of(1)) / (0.9 * kWideMm - scale.tolerance_mm);
   candidate.score_mm = candidate.length_mm * candidate.coverage * std::min(1.0, width);
   candidate.fate =
       contains(hint, candidate.centre) ? RingFate::kOutscored : RingFate::kOutsideRegion;

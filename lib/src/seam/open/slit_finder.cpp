@@ -19,7 +19,9 @@ constexpr double kMinExpected = 40.0;  // Points of a filled window: fewer may b
 constexpr double kMaxWidthMm = 9.0;
 constexpr double kBesideMm = 8.0;        // On each side it must be filled.
 constexpr double kMinFilledShare = 0.3;  // Of the mean of all bins.
-constexpr double kMaxStepMm = 3.0;       // One plate above the other.
+constexpr double kMaxStepTolerances = 1.6;
+constexpr double kFewShare = 0.35;  // Of the pixels that a cell of the plates has on average.
+constexpr double kMaxStepMm = 3.0;  // One plate above the other.
 constexpr double kMinLengthMm = 20.0;
 constexpr double kStretchSpacings = 3.0;
 constexpr double kSameMm = 10.0;
@@ -39,7 +41,7 @@ double air_sign_of(const Surface& plane, const RingHint& hint) noexcept {
 
 }  // namespace
 
-void SlitFinder::run(const cloud::CloudView& cloud, std::span<const FoundSurface> surfaces,
+void SlitFinder::run(const cloud::FusedCloudView& cloud, std::span<const FoundSurface> surfaces,
                      const Scale& scale, const RingHint& hint,
                      Buffer<OpenCandidate>& found) noexcept {
   const std::size_t before = found.size();
@@ -63,24 +65,32 @@ void SlitFinder::run(const cloud::CloudView& cloud, std::span<const FoundSurface
   }
 }
 
-// How much wider apart the points that are kept lie.
-double SlitFinder::flatten(const cloud::CloudView& cloud, const Surface& plane) noexcept {
+// How much wider apart the points that are kept lie. Cells of few pixels are what hangs in the gap.
+double SlitFinder::flatten(const cloud::FusedCloudView& cloud, const Surface& plane,
+                           double step_mm) noexcept {
   const AcrossAxis frame = across(plane.axis);
   points_.clear();
-  std::size_t on_plane = 0;
-  const auto is_on = [&](const Eigen::Vector3d& p) {
-    return std::abs(signed_distance(plane, p)) < kMaxStepMm;
+  const std::size_t n = cloud.points.size();
+  const auto at = [&](std::size_t i) {
+    return Eigen::Vector3d(cloud.points.x[i], cloud.points.y[i], cloud.points.z[i]);
   };
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    on_plane += is_on({cloud.x[i], cloud.y[i], cloud.z[i]}) ? 1U : 0U;
+  const auto is_on = [&](std::size_t i) {
+    return std::abs(signed_distance(plane, at(i))) < step_mm;
+  };
+  const auto pixels_of = [&](std::size_t i) { return cloud.count.empty() ? 1.0 : cloud.count[i]; };
+  std::size_t on_plane = 0;
+  double pixels = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    on_plane += is_on(i) ? 1U : 0U;
+    pixels += is_on(i) ? pixels_of(i) : 0.0;
   }
+  const double few = kFewShare * pixels / std::max(1.0, static_cast<double>(on_plane));
   // A share of the points by a draw: every n-th of a grid's rows would itself leave slits.
   const double share = std::min(1.0, 0.95 * double{kMaxPoints} / static_cast<double>(on_plane + 1));
   Pcg32 draw(on_plane);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Eigen::Vector3d p(cloud.x[i], cloud.y[i], cloud.z[i]);
-    if (is_on(p) && draw.uniform() < share) {
-      const Eigen::Vector3d q = p - plane.point;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (is_on(i) && pixels_of(i) >= few && draw.uniform() < share) {
+      const Eigen::Vector3d q = at(i) - plane.point;
       (void)points_.append(
           {static_cast<float>(q.dot(frame.u)), static_cast<float>(q.dot(frame.v))});
     }
@@ -222,10 +232,11 @@ bool SlitFinder::is_built_over(const cloud::CloudView& cloud, const OpenCandidat
   return static_cast<double>(over) > kMaxOverShare * static_cast<double>(count);
 }
 
-std::optional<OpenCandidate> SlitFinder::consider(const cloud::CloudView& cloud,
+std::optional<OpenCandidate> SlitFinder::consider(const cloud::FusedCloudView& cloud,
                                                   const Surface& plane, const Scale& scale,
                                                   const RingHint& hint) noexcept {
-  const double spacing_mm = scale.spacing_mm * flatten(cloud, plane);
+  const double spacing_mm =
+      scale.spacing_mm * flatten(cloud, plane, kMaxStepTolerances * scale.tolerance_mm);
   if (points_.size() < 100) {
     return std::nullopt;
   }
@@ -258,7 +269,7 @@ std::optional<OpenCandidate> SlitFinder::consider(const cloud::CloudView& cloud,
   candidate.score_mm = length * sides.coverage;
   candidate.fate =
       contains(hint, candidate.centre) ? RingFate::kOutscored : RingFate::kOutsideRegion;
-  return is_built_over(cloud, candidate) ? std::nullopt : std::optional(candidate);
+  return is_built_over(cloud.points, candidate) ? std::nullopt : std::optional(candidate);
 }
 
 void SlitFinder::lay_track(const OpenCandidate& slit, double step_mm, SeamTrack& track) noexcept {

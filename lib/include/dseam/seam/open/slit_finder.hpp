@@ -39,7 +39,7 @@ class SlitFinder {
         smooth_(arena.take<float>(kBins)) {}
 
   /// Appends to `found` what it finds, the better one of two at one place.
-  void run(const cloud::CloudView& cloud, std::span<const FoundSurface> surfaces,
+  void run(const cloud::FusedCloudView& cloud, std::span<const FoundSurface> surfaces,
            const Scale& scale, const RingHint& hint, Buffer<OpenCandidate>& found) noexcept;
   /// The straight line along a slit that was found, with steps of `step_mm`.
   static void lay_track(const OpenCandidate& slit, double step_mm, SeamTrack& track) noexcept;
@@ -63,13 +63,13 @@ class SlitFinder {
     double lead = 0.0;  // Points on the positive side less those on the other.
   };
 
-  double flatten(const cloud::CloudView& cloud, const Surface& plane) noexcept;
+  double flatten(const cloud::FusedCloudView& cloud, const Surface& plane, double step_mm) noexcept;
   [[nodiscard]] Slit slit_along(double angle_rad, double spacing_mm) noexcept;
   [[nodiscard]] Slit judge(std::size_t first, std::size_t last, std::size_t reach) const noexcept;
   [[nodiscard]] Sides sides_of(const Slit& slit, double spacing_mm) noexcept;
   [[nodiscard]] bool is_built_over(const cloud::CloudView& cloud,
                                    const OpenCandidate& slit) noexcept;
-  std::optional<OpenCandidate> consider(const cloud::CloudView& cloud, const Surface& plane,
+  std::optional<OpenCandidate> consider(const cloud::FusedCloudView& cloud, const Surface& plane,
                                         const Scale& scale, const RingHint& hint) noexcept;
 
   Buffer<Flat> points_;

@@ -110,8 +110,7 @@ bool OpenSeamChain::choose(const SeamInput& in, seam::SeamReport& report) noexce
   hint.viewpoints = all_viewpoints(in.views, viewpoints);
   found_.clear();
   fillets_.run(cells_.cells(), surfaces_.surfaces(), {cell_mm_, tolerance_mm_}, hint, found_);
-  slits_.run(in.cloud_base.points, surfaces_.surfaces(), {report.spacing_mm, tolerance_mm_}, hint,
-             found_);
+  slits_.run(in.cloud_base, surfaces_.surfaces(), {report.spacing_mm, tolerance_mm_}, hint, found_);
   std::sort(found_.items().begin(), found_.items().end(), is_better);
   const auto eligible = [](const OpenCandidate& c) { return c.fate == RingFate::kOutscored; };
   const auto best = std::find_if(found_.items().begin(), found_.items().end(), eligible);
