@@ -11,5 +11,7 @@ build=$(cd "$1" && pwd)
 find "$build" -name '*.gcda' -delete
 "$build/tests/rt/core/rt_core_test" --gtest_brief=1
 "$build/tests/rt/session/rt_session_test" --gtest_brief=1
-gcovr --root "$root/rt/core" --object-directory "$build/rt" --exclude-throw-branches --branches \
-  --fail-under-branch 100 "$build/rt"
+report=$(gcovr --root "$root/rt/core" --object-directory "$build/rt" --exclude-throw-branches \
+  --branches --fail-under-branch 100 "$build/rt")
+echo "$report"
+! grep -qE '^TOTAL +0 ' <<<"$report" || { echo "no branch was seen: is this a build with --coverage?"; exit 1; }
