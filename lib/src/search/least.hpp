@@ -14,7 +14,13 @@ struct Least {
   std::array<T, kRoom> least;
 
   [[gnu::always_inline]] void insert(T value) noexcept {
-    insert_each(value, std::make_index_sequence<kRoom>{});
+    if constexpr (kRoom <= kShort) {
+      insert_each(value, std::make_index_sequence<kRoom>{});
+    } else {
+      for (T& kept : least) {
+        order(kept, value);
+      }
+    }
   }
   /// The same, with less work than one after the other where the list is the paper's five.
   [[gnu::always_inline]] void insert_four(T a, T b, T c, T d) noexcept {
@@ -52,7 +58,9 @@ struct Least {
     order(least[1], least[2]);
     order(least[3], least[4]);
   }
-  // Written out, so that short lists stay in registers.
+  static constexpr std::size_t kShort = 10;
+  // Written out, so that short lists stay in registers; long ones would fill the stack where a
+  // vector has none.
   template <std::size_t... kPlaces>
   [[gnu::always_inline]] void insert_each(T value, std::index_sequence<kPlaces...>) noexcept {
     (order(least[kPlaces], value), ...);
