@@ -63,8 +63,8 @@ bool has_temporary_file(const std::set<std::string>& names) {
 TEST(Interrupt, while_it_scans_ends_within_a_second_and_leaves_nothing) {
   const test::ScratchFolder scratch;
   // Sixteen views, interrupted at the first: however fast the machine, it is not over by then.
-  RunningProgram weld({"weld", "--camera", "sim", "--robot", "sim", "--set", "cell.width=648",
-                       "--set", "cell.height=484", "--set", "cell.views=16", "--out",
+  RunningProgram weld({"weld", "--camera", "sim", "--robot", "sim", "--set", "cell.width=972",
+                       "--set", "cell.height=724", "--set", "cell.views=16", "--out",
                        scratch.path("out")});
   ASSERT_TRUE(weld.writes("scanning: 0 of 16"));
 
