@@ -25,7 +25,8 @@ struct SurfaceDisc {
 
 /// Fits a quadratic surface to the ring around the rim, lays the rim's edges on it and takes the
 /// circle through them: that corrects perspective and the surface's curvature. The edges and not
-/// the ellipse, since the rim of a disc on a pipe is none, by a tenth of a pixel at a grazing view.
+/// the ellipse, since the rim of a disc on a pipe is none, by a hundredth of a pixel on a small
+/// one.
 ///
 /// Time:    a bounded number of pixels, whatever the size of the disc.
 [[nodiscard]] SurfaceDisc lay_on_surface(const depth::DepthImage& frame, const EllipseEdge& edge,
