@@ -184,7 +184,7 @@ void OpenSeamChain::build_curve(const SeamInput& in, seam::SeamReport& report,
     return;
   }
   report.length_mm = built.length_mm;
-  sides.report(report);
+  sides.report(built.forward, report);
   seam::describe_curve(out.view(), report);
   seam::describe_widths(out.view(), report.joint);
   report.refusal =

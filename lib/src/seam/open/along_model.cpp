@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dseam/geometry/symmetric_matrix.hpp"
+
 namespace dseam::seam {
 namespace {
 
@@ -43,7 +45,8 @@ double AlongModel::solve(std::span<const Sample> samples, const Terms& terms) no
   const Eigen::LDLT<Square> factor(normal);
   terms_ = terms;
   coefficients_ = factor.solve(right);
-  covariance_ = factor.solve(Square::Identity());
+  covariance_ =
+      geometry::solve_columns<Eigen::LDLT<Square>, kColumns>(factor, Square(Square::Identity()));
   double squares = 0.0;
   for (const Sample& sample : samples) {
     const double rest = sample.value - at(sample.along, sample.away);
@@ -89,7 +92,13 @@ double AlongModel::at(double along, double away) const noexcept {
 
 double AlongModel::variance_at(double along) const noexcept {
   const Row row = row_at(along, 0.0, {terms_.order, 0});
-  return std::max(0.0, row.dot(covariance_ * row));
+  double variance = 0.0;
+  for (int i = 0; i < kColumns; ++i) {
+    for (int k = 0; k < kColumns; ++k) {
+      variance += row[i] * covariance_(i, k) * row[k];
+    }
+  }
+  return std::max(0.0, variance);
 }
 
 }  // namespace dseam::seam

@@ -46,6 +46,7 @@ OpenCurve::Report OpenCurve::run(const Config& config, const OpenJoint& joint,
   const Eigen::Vector3d towards =
       joint.kind == OpenKind::kButt ? second : Eigen::Vector3d(-joint.normal(1, middle.p));
   forward_ = (left.dot(towards) > 0.0) == config.second_side_left;
+  report.forward = forward_;
   report.length_mm = sides.end_mm() - sides.start_mm();
   const double steps = std::max(4.0, std::round(report.length_mm / config.point_spacing_mm));
   if (!(steps + 1.0 <= static_cast<double>(out.capacity()))) {

@@ -188,7 +188,7 @@ bool OpenSides::measured_at(double s_mm) const noexcept {
   return measured_[std::min(static_cast<std::size_t>(place), num_bins_ - 1)];
 }
 
-void OpenSides::report(SeamReport& report) const noexcept {
+void OpenSides::report(bool forward, SeamReport& report) const noexcept {
   const double bin_rad = kTurnRad / static_cast<double>(num_bins_);
   std::size_t open = 0;
   for (std::size_t i = 0; i <= num_bins_; ++i) {
@@ -200,7 +200,8 @@ void OpenSides::report(SeamReport& report) const noexcept {
       const double width = static_cast<double>(open) * bin_rad;
       report.quality.largest_hole_rad = std::max(report.quality.largest_hole_rad, width);
       if (report.num_holes < SeamReport::kMaxHoles) {
-        report.holes[report.num_holes++] = {static_cast<double>(i) * bin_rad - width, width};
+        const double end = static_cast<double>(i) * bin_rad;
+        report.holes[report.num_holes++] = {forward ? end - width : kTurnRad - end, width};
       }
     }
     open = 0;

@@ -29,6 +29,7 @@ class OpenCurve {
   struct Report {
     bool placed = false;
     bool full = false;
+    bool forward = true;  ///< Along the track.
     double length_mm = 0.0;
   };
 

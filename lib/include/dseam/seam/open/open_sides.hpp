@@ -67,8 +67,8 @@ class OpenSides {
   }
   /// True where trusted points of both sides lie within 3 mm of the seam, plus its dead band.
   [[nodiscard]] bool measured_at(double s_mm) const noexcept;
-  /// Coverage, and the stretches without measurement as shares of a turn.
-  void report(SeamReport& report) const noexcept;
+  /// The stretches without measurement as shares of a turn, from the end where travel starts.
+  void report(bool forward, SeamReport& report) const noexcept;
   /// Residuals of the points within 6 mm of the seam.
   [[nodiscard]] ResidualStats stats_of(std::size_t side) noexcept;
 
