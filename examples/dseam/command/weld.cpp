@@ -142,7 +142,7 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   if (code == ExitCode::kDone) {
     code = weld_seam(options, settings, folder, interrupted, progress, motion, job);
   }
-  if (interrupted && job.fault.empty()) {
+  if (interrupted && job.robot.empty()) {
     throw Failure(ExitCode::kDevice, "interrupted before the weld: nothing was written");
   }
   write_products(job, folder);
