@@ -50,11 +50,11 @@ void check_motion(const pipeline::MotionChain::Config& motion, const rt::MotionG
 }
 
 /// How long the torch counts as standing when it stands for `dwell_s` and then moves off, or moves
-/// up to where it stands.
+/// up to where it stands: the speed is reached within that way, so half of it is the mean.
 double standing_s(double dwell_s, const Settings& settings) {
   const double way_mm = settings.session.session.tracker.standing_mm;
   const double ramp_s = std::sqrt(2.0 * way_mm / settings.motion.limits.acceleration_mm_s2);
-  return dwell_s + way_mm / settings.motion.path.passes[0].speed_mm_s + ramp_s;
+  return dwell_s + 2.0 * way_mm / settings.motion.path.passes[0].speed_mm_s + ramp_s;
 }
 
 void check_standing(const Settings& settings, Contradictions& found) {

@@ -80,8 +80,8 @@ TEST(Interrupt, while_it_scans_ends_within_a_second_and_leaves_nothing) {
 TEST(Interrupt, while_it_welds_turns_the_arc_off_within_10_ms_and_keeps_the_record) {
   const test::ScratchFolder scratch;
   RunningProgram weld({"weld", "--camera", "sim", "--robot", "sim", "--set", "cell.width=648",
-                       "--set", "cell.height=484", "--set", "path.speed_mm_s=0.6", "--out",
-                       scratch.path("out")});
+                       "--set", "cell.height=484", "--set", "path.speed_mm_s=0.5", "--set",
+                       "rt.max_standing_s=3", "--out", scratch.path("out")});
   ASSERT_TRUE(weld.writes("welding: ", 2));  // The first may be of the approach.
 
   weld.interrupt();
