@@ -3,7 +3,7 @@
 """check_sources.py ROOT: the rules of the house that a compiler does not know.
 
 Includes point down the layers, files and functions are short enough to be read, every source names
-its licence, and no file knows the machine that it was written on.
+its licence, no file knows the machine that it was written on, and no layer reads the wall clock.
 """
 import pathlib
 import re
@@ -48,7 +48,11 @@ INCLUDE = re.compile(r'#include [<"]([^>"]+)[>"]')
 TYPE = re.compile(r"(namespace|class|struct|enum|union|extern)\b")
 ENDS_STATEMENT = re.compile(r"[;{}]( *//.*)?$")
 BESIDE_CODE = re.compile(r"^\s*(//|#|(public|private|protected):)")
-MACHINE = re.compile(r"(?<![\w.])/(?:home|root|work|tmp/wt)/")
+MACHINE = re.compile(r"(?<![\w.])/(?:home|root|work|Users)/")
+# A step of the wall clock (NTP, summer time, suspend) must not be felt: all time is monotonic.
+WALL_CLOCK = re.compile(r"CLOCK_REALTIME|system_clock|gettimeofday|[^\w]time\(nullptr\)")
+# Aravis stamps frames by the wall clock; only the age of a frame is taken from it.
+READS_WALL_CLOCK = {"hal/aravis/src/session_frames.cpp"}
 
 
 def files_of(root):
@@ -117,6 +121,9 @@ def faults_of(path, name):
     for number, line in enumerate(lines, 1):
         if MACHINE.search(line) and name.name != "check_sources.py":
             yield number, "a path of one machine"
+        if (name.parts[0] in LAYERS and WALL_CLOCK.search(line)
+                and name.as_posix() not in READS_WALL_CLOCK):
+            yield number, "the wall clock"
         included = INCLUDE.match(line)
         if included:
             yield from ((number, fault) for fault in include_faults(name, line, included.group(1)))
