@@ -120,6 +120,13 @@ void Receiver::report_pose(const torch::TorchPose& pose, double speed_mm_s) noex
   pose_known_ = true;
 }
 
+void Receiver::report_condition(const RobotCondition& condition) noexcept {
+  if (condition != condition_) {
+    condition_ = condition;
+    next_status_ns_ = 0;
+  }
+}
+
 Status Receiver::status(std::int64_t now_ns) const noexcept {
   Status status;
   status.session = session_;
@@ -134,6 +141,7 @@ Status Receiver::status(std::int64_t now_ns) const noexcept {
   status.trajectory = begun_ ? trajectory_ : std::uint16_t{0};
   status.fault = fault_;
   status.robot_time_us = as_time_us(now_ns);
+  status.condition = condition_;
   return status;
 }
 

@@ -116,10 +116,13 @@ void write_answers(Writer& out, Dice& dice) {
                             dice.u16(),  dice.u16(),
                             dice.u16(),  dice.u16(),
                             dice.u16(),  dice.one_of<link::Fault>(link::kFaultCount),
-                            dice.u48()};
+                            dice.u48(),  {dice.coin(), dice.coin(), dice.coin()}};
   out.write(link::MessageId::kStatus, link::encode(status),
             {{"ST_State", number(status.state)},
              {"ST_ArcOn", number(status.arc_on)},
+             {"ST_Enabled", number(status.condition.enabled)},
+             {"ST_ProtectiveStop", number(status.condition.protective_stop)},
+             {"ST_EmergencyStop", number(status.condition.emergency_stop)},
              {"ST_AckSeq", status.ack_seq},
              {"ST_VerifiedSeq", status.verified_seq},
              {"ST_ExecSeq", status.exec_seq},

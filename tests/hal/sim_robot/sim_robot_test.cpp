@@ -52,6 +52,24 @@ TEST(SimRobot, a_step_allocates_nothing) {
   EXPECT_EQ(counter.count(), 0U);
 }
 
+TEST(SimRobot, is_enabled_until_somebody_stops_it) {
+  LinkCell cell;
+  const auto points = round_weld(2500, 4000);
+  const link::WeldOrder weld{7, 1, points, true};
+  while (!cell.robot_.receiver().arc_on()) {
+    ASSERT_EQ(cell.step(weld), link::WeldProgress::kUnderWay);
+  }
+  const link::RobotCondition before = cell.sender_.status().condition;
+
+  cell.robot_.report_condition({.enabled = true, .emergency_stop = true});
+  for (int i = 0; i < 3; ++i) {
+    cell.step(weld);
+  }
+
+  EXPECT_EQ(before, link::RobotCondition{.enabled = true});
+  EXPECT_TRUE(cell.sender_.status().condition.emergency_stop);
+}
+
 TEST(SimRobot, bus_off_ends_the_weld_on_both_sides_with_its_name) {
   LinkCell cell;
   const auto points = round_weld(2500, 4000);

@@ -78,7 +78,8 @@ inline Frame payload_of(MessageId message) {
     case MessageId::kHelloRobot:
       return encode(Hello{9, kProtocolVersion, 1, 2, 3, 20, 5.0});
     default:
-      return encode(Status{9, RobotState::kRunning, true, 6, 5, 4, 3, 2, 1, Fault::kNone, 8});
+      return encode(Status{
+          9, RobotState::kRunning, true, 6, 5, 4, 3, 2, 1, Fault::kNone, 8, {.enabled = true}});
   }
 }
 

@@ -137,6 +137,32 @@ TEST(Codec, a_status_comes_back_as_it_was) {
   EXPECT_EQ(got.robot_time_us, sent.robot_time_us);
 }
 
+TEST(Codec, each_condition_of_the_robot_comes_back_alone) {
+  const RobotCondition conditions[] = {{},
+                                       {.enabled = true},
+                                       {.protective_stop = true},
+                                       {.emergency_stop = true},
+                                       {true, true, true}};
+  for (const RobotCondition& condition : conditions) {
+    Status sent;
+    sent.condition = condition;
+
+    const Result<Status> decoded = decode_status(encode(sent));
+
+    ASSERT_TRUE(decoded.ok());
+    EXPECT_EQ(decoded.value().condition, condition);
+  }
+}
+
+TEST(Codec, a_reserved_condition_of_the_robot_is_bad_data) {
+  for (const unsigned bit : {0x08U, 0x10U, 0x20U, 0x40U, 0x80U}) {
+    Frame status = encode(Status{});
+    status.data[28] = static_cast<std::byte>(bit);
+
+    EXPECT_FALSE(decode_status(status).ok());
+  }
+}
+
 TEST(Codec, an_enumerator_that_does_not_exist_is_bad_data) {
   Frame status = encode(Status{});
   Frame command = encode(Command{});

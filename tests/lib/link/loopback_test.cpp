@@ -182,6 +182,20 @@ TEST_P(Loopback, what_was_expected_is_loaded_and_what_was_not_is_looked_at) {
   EXPECT_TRUE(host_.load(points, 2, now_ns_).ok());
 }
 
+TEST_P(Loopback, what_the_robot_says_of_itself_is_heard_with_its_next_turn) {
+  ASSERT_TRUE(host_.connect(5, now_ns_).ok());
+  ASSERT_TRUE(run_until(HostState::kIdle));
+  for (const RobotCondition condition : {RobotCondition{.enabled = true},
+                                         {.enabled = true, .protective_stop = true},
+                                         {false, false, true}}) {
+    robot_.report_condition(condition);
+
+    step();
+
+    EXPECT_EQ(host_.status().condition, condition);
+  }
+}
+
 TEST_P(Loopback, nobody_there_is_a_named_fault) {
   host_to_robot_ = false;
   ASSERT_TRUE(host_.connect(5, now_ns_).ok());

@@ -19,6 +19,7 @@ SimRobot::SimRobot(const Config& config, CanBus& bus)
       port_(bus),
       pose_(config.home) {
   executed_.reserve(config.record_points);
+  report_condition(config.condition);
 }
 
 void SimRobot::step(std::int64_t now_ns) noexcept {

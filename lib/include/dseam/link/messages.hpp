@@ -79,6 +79,16 @@ struct Command {
   std::uint64_t host_time_us = 0;  ///< 48 bits; rises strictly within a session.
 };
 
+/// What the robot's own controller says of itself, whatever the link does. Unless it says otherwise
+/// the robot may not be armed.
+struct RobotCondition {
+  bool enabled = false;  ///< The mode of operation and the enabling device let it move.
+  bool protective_stop = false;
+  bool emergency_stop = false;
+
+  friend constexpr bool operator==(const RobotCondition&, const RobotCondition&) = default;
+};
+
 /// Robot to host, cyclic. Sequence numbers are modulo 2^16 and name the next one expected.
 struct Status {
   std::uint32_t session = 0;
@@ -92,6 +102,7 @@ struct Status {
   std::uint16_t trajectory = 0;
   Fault fault = Fault::kNone;
   std::uint64_t robot_time_us = 0;  ///< 48 bits; rises strictly within a session.
+  RobotCondition condition;
 };
 
 enum class TrajectoryKind : std::uint8_t { kBegin, kMark };
@@ -154,6 +165,6 @@ struct Hello {
 
 inline constexpr std::uint8_t kProtocolVersion = 1;
 /// CRC-32 of the text of docs/weld-link.dbc: both ends were built from the same dictionary.
-inline constexpr std::uint32_t kDictionaryCrc = 0x4E4F03AA;
+inline constexpr std::uint32_t kDictionaryCrc = 0x56FA9D14;
 
 }  // namespace dseam::link

@@ -76,6 +76,9 @@ class Receiver {
   void bus_lost(std::int64_t now_ns) noexcept { trip(Fault::kBusLost, now_ns); }
   /// What the next POSE message says.
   void report_pose(const torch::TorchPose& pose, double speed_mm_s) noexcept;
+  /// What STATUS says of the robot from now on; a change is sent with the next poll(). Only tells:
+  /// what stops the robot then is its own controller, and the host.
+  void report_condition(const RobotCondition& condition) noexcept;
 
   [[nodiscard]] RobotState state() const noexcept { return state_; }
   [[nodiscard]] Fault fault() const noexcept { return fault_; }
@@ -158,6 +161,7 @@ class Receiver {
   NackReason nack_reason_ = NackReason::kGap;
   bool pose_known_ = false;
   PoseReport pose_;
+  RobotCondition condition_;
 };
 
 }  // namespace dseam::link

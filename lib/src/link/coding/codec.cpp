@@ -39,6 +39,23 @@ std::uint8_t with_bit4(Enum low, bool bit) noexcept {
   return static_cast<std::uint8_t>(static_cast<unsigned>(low) | (bit ? 0x10U : 0U));
 }
 
+constexpr unsigned kEnabled = 1U;
+constexpr unsigned kProtectiveStop = 2U;
+constexpr unsigned kEmergencyStop = 4U;
+constexpr unsigned kConditionBits = kEnabled | kProtectiveStop | kEmergencyStop;
+
+std::uint8_t bits_of(const RobotCondition& condition) noexcept {
+  return static_cast<std::uint8_t>((condition.enabled ? kEnabled : 0U) |
+                                   (condition.protective_stop ? kProtectiveStop : 0U) |
+                                   (condition.emergency_stop ? kEmergencyStop : 0U));
+}
+
+/// A reserved bit that is set is damage here as well.
+bool get_condition(unsigned bits, RobotCondition& out) noexcept {
+  out = {(bits & kEnabled) != 0, (bits & kProtectiveStop) != 0, (bits & kEmergencyStop) != 0};
+  return (bits & ~kConditionBits) == 0;
+}
+
 }  // namespace
 
 Frame encode(const Abort& message) noexcept {
@@ -91,6 +108,7 @@ Frame encode(const Status& message) noexcept {
   put(frame, 16, message.robot_time_us, kTimeBytes);
   put(frame, 22, message.session);
   put(frame, 26, message.verified_seq);
+  put(frame, 28, bits_of(message.condition));
   return frame;
 }
 
@@ -98,7 +116,8 @@ Result<Status> decode_status(const Frame& frame) noexcept {
   Status message;
   if (frame.size_bytes != 32 ||
       !get_with_bit4(frame, 3, kRobotStateCount, message.state, message.arc_on) ||
-      !get_enum(get<std::uint16_t>(frame, 14), kFaultCount, message.fault)) {
+      !get_enum(get<std::uint16_t>(frame, 14), kFaultCount, message.fault) ||
+      !get_condition(get<std::uint8_t>(frame, 28), message.condition)) {
     return Errc::kBadData;
   }
   message.ack_seq = get<std::uint16_t>(frame, 4);

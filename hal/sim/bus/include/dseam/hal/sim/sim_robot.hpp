@@ -32,6 +32,7 @@ class SimRobot {
     std::uint16_t buffer_points = 1024;
     std::size_t record_points = 100'000;  ///< Further ones are executed, but not recorded.
     torch::TorchPose home;                ///< Where it stands before the first point.
+    link::RobotCondition condition{.enabled = true};
   };
 
   /// Errors:  kInvalidArgument: as link::Receiver::make().
@@ -43,6 +44,10 @@ class SimRobot {
 
   /// Everything that is due at `now_ns`; call at least every millisecond.
   void step(std::int64_t now_ns) noexcept;
+  /// Somebody stops it, or lets go of its enabling device: it tells the host and moves on.
+  void report_condition(const link::RobotCondition& condition) noexcept {
+    receiver_.report_condition(condition);
+  }
 
   [[nodiscard]] std::span<const ExecutedPoint> executed() const noexcept { return executed_; }
   [[nodiscard]] std::uint64_t not_recorded() const noexcept { return not_recorded_; }
