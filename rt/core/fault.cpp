@@ -31,6 +31,9 @@ const char* name(Fault fault) noexcept {
                                     "RxOverflow",
                                     "LinkLost",
                                     "PeerStopped",
+                                    "RobotEmergencyStop",
+                                    "RobotProtectiveStop",
+                                    "RobotNotEnabled",
                                     "Privilege",
                                     "Operator"};
   static_assert(sizeof(kNames) / sizeof(kNames[0]) == kNumFaults);

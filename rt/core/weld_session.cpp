@@ -62,7 +62,7 @@ Result<> WeldSession::plan(const torch::TorchPose& now, trajectory::SetPointView
 bool WeldSession::may_arm() const noexcept {
   const bool system_ready = (in_.real_time || config_.allow_degraded) && !session_used_ &&
                             link_.state() == link::HostState::kIdle;
-  return system_ready && enable_ && enable_edge_;
+  return system_ready && robot_fault() == Fault::kNone && enable_ && enable_edge_;
 }
 
 /// Conditions that the table cannot know.

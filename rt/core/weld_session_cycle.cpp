@@ -85,7 +85,23 @@ Fault WeldSession::supervise() noexcept {
   if (!in_.real_time && !config_.allow_degraded) {
     return Fault::kPrivilege;
   }
-  return link_fault();
+  const Fault robot = robot_fault();  // Before what follows from it on the link.
+  return robot == Fault::kNone ? link_fault() : robot;
+}
+
+/// What the robot's newest status says of the robot itself.
+Fault WeldSession::robot_fault() const noexcept {
+  const link::Status& status = link_.status();
+  if (status.session == 0) {
+    return Fault::kNone;  // It has said nothing yet.
+  }
+  if (status.condition.emergency_stop) {
+    return Fault::kRobotEmergencyStop;
+  }
+  if (status.condition.protective_stop) {
+    return Fault::kRobotProtectiveStop;
+  }
+  return status.condition.enabled ? Fault::kNone : Fault::kRobotNotEnabled;
 }
 
 Fault WeldSession::link_fault() const noexcept {
@@ -171,6 +187,7 @@ void WeldSession::count() noexcept {
   health_.state = state_;
   health_.fault = latch_.first();
   health_.link_fault = link_.fault();
+  health_.robot_fault = robot_fault();
   health_.bus = bus.state;
   health_.arc_permitted = permitted_;
   health_.arc_on = link_.status().arc_on;

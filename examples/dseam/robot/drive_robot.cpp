@@ -98,6 +98,9 @@ std::string fault_of(const WeldOutcome& outcome) {
   if (outcome.fault != rt::Fault::kNone) {
     return std::string("the weld was stopped: ") + rt::name(outcome.fault);
   }
+  if (outcome.health.robot_fault != rt::Fault::kNone) {
+    return std::string("the robot is not ready: ") + rt::name(outcome.health.robot_fault);
+  }
   return std::string("the robot did not follow: ") + link::name(outcome.health.link_fault);
 }
 

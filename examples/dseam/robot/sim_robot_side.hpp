@@ -23,6 +23,7 @@ class SimRobotSide final : public RobotSide {
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> facts() const override;
 
   [[nodiscard]] const hal::sim::SimRobot& robot() const { return robot_; }
+  [[nodiscard]] hal::sim::SimRobot& robot() { return robot_; }
 
  private:
   hal::fake::ManualClock clock_;

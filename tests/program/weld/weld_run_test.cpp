@@ -108,6 +108,35 @@ TEST_F(WeldRunTest, an_enable_that_is_taken_back_while_the_arc_burns_stops_the_w
   EXPECT_LT(side_->robot().executed().size(), motion_.points().size());
 }
 
+TEST_F(WeldRunTest, an_emergency_stop_of_the_robot_ends_the_weld_under_its_name) {
+  const WeldOutcome outcome = run([&](std::size_t, std::size_t) {
+    if (side_->robot().receiver().arc_on()) {
+      side_->robot().report_condition({.enabled = true, .emergency_stop = true});
+    }
+  });
+
+  EXPECT_FALSE(outcome.finished);
+  EXPECT_EQ(outcome.fault, rt::Fault::kRobotEmergencyStop);
+  EXPECT_EQ(outcome.health.robot_fault, rt::Fault::kRobotEmergencyStop);
+  EXPECT_FALSE(outcome.health.arc_on);
+  EXPECT_LT(side_->robot().executed().size(), motion_.points().size());
+}
+
+TEST_F(WeldRunTest, a_robot_that_is_not_enabled_is_never_armed_and_named) {
+  side_.emplace(motion_.points().front().pose);
+  side_->robot().report_condition({.enabled = false});
+  WeldRun weld(settings_.session, *side_, side_->bus(), *enable_, interrupted_);
+
+  const WeldOutcome outcome =
+      weld.run([this](const torch::TorchPose& now) { return motion_.plan_from(now); },
+               [](std::size_t, std::size_t) {});
+
+  EXPECT_FALSE(outcome.finished);
+  EXPECT_EQ(outcome.fault, rt::Fault::kNone);
+  EXPECT_EQ(outcome.health.robot_fault, rt::Fault::kRobotNotEnabled);
+  EXPECT_TRUE(side_->robot().executed().empty());
+}
+
 TEST_F(WeldRunTest, without_an_enable_the_robot_is_never_armed) {
   class Nobody final : public OperatorEnable {
    public:

@@ -6,6 +6,7 @@
 
 namespace {
 
+using dseam::link::RobotCondition;
 using dseam::rt::Fault;
 using dseam::rt::WeldSession;
 using dseam::test::kMs;
@@ -110,6 +111,31 @@ TEST(WeldSession, losing_the_operators_condition_stops_with_the_arc_off) {
   cell.run(5 * kMs);
   EXPECT_FALSE(cell.arc_on());
   EXPECT_TRUE(cell.run_until([&] { return cell.session.state() == S::kIdle; }, 2000 * kMs));
+}
+
+TEST(WeldSession, a_robot_that_says_it_is_not_ready_is_not_armed_and_may_be_once_it_is) {
+  const struct {
+    RobotCondition condition;
+    Fault name;
+  } rows[] = {{{.enabled = true, .emergency_stop = true}, Fault::kRobotEmergencyStop},
+              {{.enabled = true, .protective_stop = true}, Fault::kRobotProtectiveStop},
+              {{.enabled = false}, Fault::kRobotNotEnabled},
+              {{false, true, true}, Fault::kRobotEmergencyStop}};
+  for (const auto& row : rows) {
+    VirtualCell cell(30);
+    cell.robot_trouble.condition = row.condition;
+    ASSERT_TRUE(cell.bring_to(S::kPlanned));
+    cell.inputs.operator_enable = true;
+    cell.run(50 * kMs);
+
+    EXPECT_FALSE(cell.session.order(E::kArm).ok());
+    EXPECT_EQ(cell.session.health().robot_fault, row.name);
+    EXPECT_EQ(cell.session.fault(), Fault::kNone);  // Nothing was armed that could be at fault.
+    cell.robot_trouble.condition = {.enabled = true};
+    cell.run(5 * kMs);
+    EXPECT_TRUE(cell.session.order(E::kArm).ok());
+    EXPECT_EQ(cell.session.health().robot_fault, Fault::kNone);
+  }
 }
 
 TEST(WeldSession, a_robot_that_is_not_there_ends_in_a_name) {

@@ -202,6 +202,44 @@ TEST(WeldSession, a_robot_that_falls_silent_while_armed_leaves_stale_data) {
   EXPECT_EQ(cell.session.fault(), Fault::kDataStale);
 }
 
+TEST(WeldSession, a_robot_that_was_stopped_loses_the_arc_in_the_cycle_that_hears_of_it) {
+  const dseam::link::RobotCondition conditions[] = {{.enabled = true, .emergency_stop = true},
+                                                    {.enabled = true, .protective_stop = true},
+                                                    {.enabled = false}};
+  const std::uint32_t abort_id = dseam::link::Addressing{}.id_of(dseam::link::MessageId::kAbort);
+  for (const auto& condition : conditions) {
+    VirtualCell cell(31);
+    ASSERT_TRUE(weld_half(cell));
+    cell.robot_trouble.condition = condition;
+
+    ASSERT_TRUE(
+        cell.run_until([&] { return cell.sender().status().condition == condition; }, 2 * kMs));
+
+    EXPECT_NE(cell.session.fault(), Fault::kNone);
+    EXPECT_FALSE(cell.session.health().arc_permitted);
+    ASSERT_FALSE(cell.bus.sent_this_cycle.empty());
+    EXPECT_EQ(cell.bus.sent_this_cycle.front().id, abort_id);
+    cell.run(2 * kMs);
+    EXPECT_FALSE(cell.arc_on());
+    EXPECT_EQ(cell.breach(), "");
+  }
+}
+
+TEST(WeldSession, a_robot_that_is_stopped_before_it_moves_is_latched_as_well) {
+  for (const S state : {S::kArmed, S::kLoading}) {
+    VirtualCell cell(32);
+    ASSERT_TRUE(cell.bring_to(state));
+    cell.robot_trouble.condition.emergency_stop = true;
+
+    cell.run(5 * kMs);
+    cell.robot_trouble.condition.emergency_stop = false;
+    cell.run(500 * kMs);
+
+    EXPECT_EQ(cell.session.fault(), Fault::kRobotEmergencyStop);
+    EXPECT_EQ(cell.session.state(), S::kSafe);
+  }
+}
+
 TEST(PathTracker, without_a_path_it_tells_only_of_the_torch) {
   dseam::rt::PathTracker tracker{{}};
   dseam::rt::ArcInputs in;

@@ -34,10 +34,13 @@ enum class Fault : std::uint8_t {
   kRxOverflow,            ///< Frames of the robot were lost for want of room.
   kLinkLost,              ///< The weld link latched its safe state.
   kPeerStopped,           ///< The robot left the running state by itself.
+  kRobotEmergencyStop,    ///< The robot says that its emergency stop is pressed,
+  kRobotProtectiveStop,   ///< that a protective stop holds it,
+  kRobotNotEnabled,       ///< that its mode or its enabling device lets it not move.
   kPrivilege,             ///< Real-time scheduling or memory locking was refused.
   kOperator,              ///< The operator, a signal or the program asked for it.
 };
-inline constexpr std::uint8_t kNumFaults = 29;
+inline constexpr std::uint8_t kNumFaults = 32;
 
 /// The name of the fault without its `k`, for logs and tests.
 [[nodiscard]] const char* name(Fault fault) noexcept;

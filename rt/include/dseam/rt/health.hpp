@@ -16,6 +16,7 @@ struct Health {
   SessionState state = SessionState::kIdle;
   Fault fault = Fault::kNone;  ///< The latched one.
   link::Fault link_fault = link::Fault::kNone;
+  Fault robot_fault = Fault::kNone;  ///< What the robot says of itself now, armed or not.
   hal::BusState bus = hal::BusState::kDown;
   bool arc_permitted = false;
   bool arc_on = false;  ///< As the robot reports it.

@@ -76,7 +76,8 @@ class WeldSession {
   [[nodiscard]] SessionState state() const noexcept { return state_; }
   [[nodiscard]] Fault fault() const noexcept { return latch_.first(); }
   [[nodiscard]] const Health& health() const noexcept { return health_; }
-  /// Both arming conditions hold, and the operator's came after the last disarming.
+  /// Both arming conditions hold, the operator's came after the last disarming, and the robot says
+  /// that it is ready.
   [[nodiscard]] bool may_arm() const noexcept;
 
  private:
@@ -91,6 +92,7 @@ class WeldSession {
   void receive() noexcept;
   void watch_operator(bool enable) noexcept;
   [[nodiscard]] Fault supervise() noexcept;
+  [[nodiscard]] Fault robot_fault() const noexcept;
   [[nodiscard]] Fault link_fault() const noexcept;
   void follow_link() noexcept;
   [[nodiscard]] bool at_rest() const noexcept;

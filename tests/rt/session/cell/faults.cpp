@@ -28,6 +28,8 @@ auto robot(T member, auto value) {
   return [member, value](Cell& cell) { cell.robot_trouble.*member = value; };
 }
 
+const link::RobotCondition kReady{.enabled = true};
+
 void stall_three_times(Cell& cell) {
   for (int i = 0; i < 3; ++i) {
     cell.stall_ns = 2 * kMs;
@@ -90,6 +92,19 @@ const std::vector<FaultKind>& fault_kinds() {
        [](Cell& c) { c.robot_trouble.impostor = stranger(c, 0, 9000); },
        [](Cell& c) { c.robot_trouble.impostor.reset(); },
        {Fault::kDataStale}},
+      {"21 emergency stop",
+       robot(&R::condition, link::RobotCondition{.enabled = true, .emergency_stop = true}),
+       robot(&R::condition, kReady),
+       {Fault::kRobotEmergencyStop}},
+      {"21 protective stop for a moment",
+       robot(&R::condition, link::RobotCondition{.enabled = true, .protective_stop = true}),
+       robot(&R::condition, kReady),
+       {Fault::kRobotProtectiveStop},
+       2 * kMs},
+      {"21 enabling device let go",
+       robot(&R::condition, link::RobotCondition{}),
+       robot(&R::condition, kReady),
+       {Fault::kRobotNotEnabled}},
       {"23 tracking error",
        robot(&R::behind_mm, 6.0),
        robot(&R::behind_mm, 0.0),

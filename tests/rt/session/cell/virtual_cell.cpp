@@ -89,6 +89,7 @@ void VirtualCell::robot_cycle() {
   std::array<link::Frame, 16> storage{};
   Buffer<link::Frame> out(storage);
   const bool moving = robot_.moving();
+  robot_.report_condition(robot_trouble.condition);
   robot_.poll(now_ns(), out);
   move_robot();
   arc_on_ns_ += robot_.arc_on() ? kPeriodNs : 0;

@@ -17,12 +17,13 @@ namespace dseam::test {
 
 /// What a robot does that it should not.
 struct RobotTrouble {
-  bool silent = false;                   ///< Sends nothing, hears all.
-  bool frozen = false;                   ///< Its pose stays where it is,
-  double aside_mm = 0.0;                 ///< or lies beside the path,
-  double behind_mm = 0.0;                ///< or behind where it should be,
-  double speed_factor = 1.0;             ///< or it says another speed.
-  std::optional<link::Status> impostor;  ///< Or somebody else speaks in its place.
+  bool silent = false;                              ///< Sends nothing, hears all.
+  bool frozen = false;                              ///< Its pose stays where it is,
+  double aside_mm = 0.0;                            ///< or lies beside the path,
+  double behind_mm = 0.0;                           ///< or behind where it should be,
+  double speed_factor = 1.0;                        ///< or it says another speed.
+  link::RobotCondition condition{.enabled = true};  ///< Or it says that it was stopped.
+  std::optional<link::Status> impostor;             ///< Or somebody else speaks in its place.
 };
 
 /// A host, a bus and a robot in one thread, under one virtual clock, driven by one seed. What must
