@@ -212,7 +212,7 @@ TYPED_TEST_P(DepthCameraContract, the_latest_mode_drains_to_the_newest_frame) {
 
 TYPED_TEST_P(DepthCameraContract, an_unplugged_camera_says_so_and_comes_back_by_itself) {
   ASSERT_TRUE(this->camera().start(hal::FrameMode::kEvery).ok());
-  const auto held = this->must_next();
+  auto held = this->must_next();
   const std::uint64_t before = held.frame().sequence;
   if constexpr (TypeParam::kCanUnplug) {
     const auto bytes = held.frame().depth;
@@ -225,6 +225,7 @@ TYPED_TEST_P(DepthCameraContract, an_unplugged_camera_says_so_and_comes_back_by_
     }
     EXPECT_EQ(seen, Errc::kDisconnected);
     EXPECT_TRUE(std::equal(copy.begin(), copy.end(), bytes.begin(), bytes.end()));
+    held = hal::FrameLease();  // A mapped buffer on loan keeps a driver from coming back.
 
     this->device_.plug_in();
     bool back = false;
