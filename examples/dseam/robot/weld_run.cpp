@@ -79,6 +79,7 @@ bool WeldRun::start(trajectory::SetPointView points) {
   if (!session_.order(E::kScan).ok() || !session_.plan(sender_.pose().pose, points).ok()) {
     return false;
   }
+  cycle();  // Late by the time that planning took: nothing is armed yet that it could trip.
   return session_.order(E::kArm).ok() && cycle_until(link_is(H::kArmed), kAnswerLimitS) &&
          session_.order(E::kLoad).ok() && cycle_until(link_is(H::kReady), kAnswerLimitS) &&
          session_.order(E::kStart).ok() && cycle_until(link_is(H::kRunning), kAnswerLimitS);
