@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/rt/histogram.hpp"
+#include "dseam/rt/timing/histogram.hpp"
 
 #include <algorithm>
 

@@ -9,7 +9,7 @@
 #include "dseam/cloud/voxel_downsample.hpp"
 #include "dseam/seam/boundary.hpp"
 #include "support/arena_owner.hpp"
-#include "support/clouds.hpp"
+#include "support/shapes/clouds.hpp"
 
 namespace dseam::bench {
 

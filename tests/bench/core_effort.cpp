@@ -12,7 +12,7 @@
 #include "dseam/cloud/radius_outlier_removal.hpp"
 #include "dseam/cloud/voxel_downsample.hpp"
 #include "support/arena_owner.hpp"
-#include "support/clouds.hpp"
+#include "support/shapes/clouds.hpp"
 
 namespace dseam::test {
 namespace {

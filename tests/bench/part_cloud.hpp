@@ -8,7 +8,7 @@
 
 #include "dseam/base/random.hpp"
 #include "dseam/depth/depth_image.hpp"
-#include "support/clouds.hpp"
+#include "support/shapes/clouds.hpp"
 
 namespace dseam::bench {
 

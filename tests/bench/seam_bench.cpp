@@ -10,7 +10,7 @@
 #include "dseam/pipeline/seam_chain.hpp"
 #include "pcl_peer.hpp"
 #include "support/arena_owner.hpp"
-#include "support/joint_cloud.hpp"
+#include "support/shapes/joint_cloud.hpp"
 
 namespace dseam::bench {
 namespace {

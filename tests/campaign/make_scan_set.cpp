@@ -11,7 +11,7 @@
 
 #include "dseam/hal/replay/scan_set.hpp"
 #include "dseam/hal/sim/cell.hpp"
-#include "support/cell_rows.hpp"
+#include "support/accuracy/cell_rows.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "campaign/seam_run.hpp"
-#include "support/chi_squared.hpp"
+#include "support/accuracy/chi_squared.hpp"
 
 namespace {
 

@@ -10,9 +10,9 @@
 #include "dseam/base/random.hpp"
 #include "dseam/hal/sim/cell.hpp"
 #include "dseam/pipeline/weld_pipeline.hpp"
+#include "support/accuracy/fused_scan.hpp"
+#include "support/accuracy/seam_accuracy.hpp"
 #include "support/arena_owner.hpp"
-#include "support/fused_scan.hpp"
-#include "support/seam_accuracy.hpp"
 
 namespace dseam::campaign {
 namespace {

@@ -9,8 +9,8 @@
 #include "dseam/base/random.hpp"
 #include "dseam/hal/sim/cell.hpp"
 #include "dseam/pipeline/splice_chain.hpp"
+#include "support/accuracy/seam_accuracy.hpp"
 #include "support/arena_owner.hpp"
-#include "support/seam_accuracy.hpp"
 
 namespace dseam::test {
 namespace {

@@ -14,10 +14,10 @@
 #include "dseam/hal/sim/sim_robot.hpp"
 #include "dseam/hal/socketcan/socketcan_bus.hpp"
 #include "dseam/rt/cycle.hpp"
-#include "dseam/rt/cycle_times.hpp"
 #include "dseam/rt/latest_value.hpp"
 #include "dseam/rt/linux/monotonic_clock.hpp"
 #include "dseam/rt/linux/thread_setup.hpp"
+#include "dseam/rt/timing/cycle_times.hpp"
 #include "hal/sim_robot/cell.hpp"
 #include "vivid.hpp"
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include "dseam/rt/cycle_times.hpp"
+#include "dseam/rt/timing/cycle_times.hpp"
 #include "dseam/rt/weld_session.hpp"
 #include "robot/robot_side.hpp"
 #include "terminal/operator_enable.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "pipeline/marker_mask.hpp"
-#include "pipeline/region.hpp"
+#include "pipeline/seam/region.hpp"
 
 namespace dseam::pipeline {
 namespace {

@@ -14,9 +14,9 @@
 
 #include "dseam/pipeline/weld_pipeline.hpp"
 #include "peers/sgm_peer.hpp"
+#include "support/accuracy/fused_scan.hpp"
+#include "support/accuracy/seam_accuracy.hpp"
 #include "support/arena_owner.hpp"
-#include "support/fused_scan.hpp"
-#include "support/seam_accuracy.hpp"
 #include "tables/stereo_pair.hpp"
 #include "tables/view_pair.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "support/chi_squared.hpp"
+#include "support/accuracy/chi_squared.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "support/seam_accuracy.hpp"
+#include "support/accuracy/seam_accuracy.hpp"
 
 #include <gtest/gtest.h>
 

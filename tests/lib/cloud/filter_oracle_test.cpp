@@ -11,7 +11,7 @@
 #include "dseam/cloud/radius_outlier_removal.hpp"
 #include "support/allocation_counter.hpp"
 #include "support/arena_owner.hpp"
-#include "support/clouds.hpp"
+#include "support/shapes/clouds.hpp"
 
 namespace dseam::cloud {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "support/allocation_counter.hpp"
 #include "support/arena_owner.hpp"
-#include "support/clouds.hpp"
+#include "support/shapes/clouds.hpp"
 
 namespace dseam::cloud {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "support/allocation_counter.hpp"
 #include "support/arena_owner.hpp"
-#include "support/joint_cloud.hpp"
+#include "support/shapes/joint_cloud.hpp"
 
 namespace dseam::pipeline {
 namespace {

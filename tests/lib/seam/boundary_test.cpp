@@ -13,7 +13,7 @@
 #include "dseam/cloud/normals.hpp"
 #include "support/allocation_counter.hpp"
 #include "support/arena_owner.hpp"
-#include "support/clouds.hpp"
+#include "support/shapes/clouds.hpp"
 
 namespace dseam::seam {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "dseam/search/grid_index.hpp"
 #include "support/arena_owner.hpp"
-#include "support/clouds.hpp"
+#include "support/shapes/clouds.hpp"
 
 namespace dseam::search {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "dseam/base/random.hpp"
 #include "support/allocation_counter.hpp"
-#include "support/analytic_saddle.hpp"
 #include "support/arena_owner.hpp"
+#include "support/shapes/analytic_saddle.hpp"
 
 namespace {
 

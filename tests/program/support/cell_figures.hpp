@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "support/seam_accuracy.hpp"
+#include "support/accuracy/seam_accuracy.hpp"
 
 namespace dseam::program::test {
 

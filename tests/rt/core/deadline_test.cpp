@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/rt/deadline.hpp"
+#include "dseam/rt/timing/deadline.hpp"
 
 #include <gtest/gtest.h>
 
-#include "dseam/rt/histogram.hpp"
+#include "dseam/rt/timing/histogram.hpp"
 
 namespace {
 

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "dseam/rt/cycle.hpp"
-#include "dseam/rt/histogram.hpp"
 #include "dseam/rt/linux/monotonic_clock.hpp"
 #include "dseam/rt/linux/thread_setup.hpp"
+#include "dseam/rt/timing/histogram.hpp"
 #include "support/allocation_counter.hpp"
 
 namespace {

@@ -13,8 +13,8 @@
 #include "dseam/torch/torch_planner.hpp"
 #include "dseam/trajectory/sampler.hpp"
 #include "support/allocation_counter.hpp"
-#include "support/analytic_saddle.hpp"
 #include "support/arena_owner.hpp"
+#include "support/shapes/analytic_saddle.hpp"
 
 namespace {
 

@@ -8,9 +8,9 @@
 
 #include "command/commands.hpp"
 #include "dseam/rt/cycle.hpp"
-#include "dseam/rt/histogram.hpp"
 #include "dseam/rt/linux/monotonic_clock.hpp"
 #include "dseam/rt/linux/thread_setup.hpp"
+#include "dseam/rt/timing/histogram.hpp"
 #include "terminal/interrupt.hpp"
 
 namespace dseam::program {

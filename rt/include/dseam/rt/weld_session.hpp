@@ -11,12 +11,12 @@
 #include "dseam/link/sender.hpp"
 #include "dseam/rt/arc_gate.hpp"
 #include "dseam/rt/cycle.hpp"
-#include "dseam/rt/deadline.hpp"
 #include "dseam/rt/fault.hpp"
 #include "dseam/rt/health.hpp"
 #include "dseam/rt/motion_gate.hpp"
 #include "dseam/rt/path_tracker.hpp"
 #include "dseam/rt/session_machine.hpp"
+#include "dseam/rt/timing/deadline.hpp"
 
 namespace dseam::rt {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "dseam/rt/histogram.hpp"
+#include "dseam/rt/timing/histogram.hpp"
 
 namespace dseam::rt {
 

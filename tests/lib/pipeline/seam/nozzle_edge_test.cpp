@@ -4,10 +4,10 @@
 #include <algorithm>
 
 #include "dseam/hal/sim/cell.hpp"
+#include "support/accuracy/fused_scan.hpp"
+#include "support/accuracy/seam_accuracy.hpp"
+#include "support/accuracy/seam_finder.hpp"
 #include "support/allocation_counter.hpp"
-#include "support/fused_scan.hpp"
-#include "support/seam_accuracy.hpp"
-#include "support/seam_finder.hpp"
 
 namespace dseam::pipeline {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "support/plate_cloud.hpp"
+#include "support/shapes/plate_cloud.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

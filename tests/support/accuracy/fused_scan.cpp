@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "support/fused_scan.hpp"
+#include "support/accuracy/fused_scan.hpp"
 
 #include "dseam/cloud/frame_fuser.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "open_seam_finder.hpp"
-#include "support/joint_cloud.hpp"
+#include "support/shapes/joint_cloud.hpp"
 
 namespace dseam::pipeline {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "support/clouds.hpp"
+#include "support/shapes/clouds.hpp"
 
 #include <array>
 #include <bit>

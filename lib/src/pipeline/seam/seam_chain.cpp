@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "dseam/seam/curve/quality.hpp"
-#include "pipeline/seam_scales.hpp"
+#include "pipeline/seam/seam_scales.hpp"
 
 namespace dseam::pipeline {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dseam/pipeline/seam_chain.hpp"
-#include "support/seam_finder.hpp"
+#include "support/accuracy/seam_finder.hpp"
 
 namespace dseam::pipeline {
 namespace {

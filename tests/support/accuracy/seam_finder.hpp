@@ -7,7 +7,7 @@
 
 #include "dseam/pipeline/seam_chain.hpp"
 #include "support/arena_owner.hpp"
-#include "support/joint_cloud.hpp"
+#include "support/shapes/joint_cloud.hpp"
 
 namespace dseam::test {
 

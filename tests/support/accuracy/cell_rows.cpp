@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "support/cell_rows.hpp"
+#include "support/accuracy/cell_rows.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "support/accuracy/seam_accuracy.hpp"
 #include "support/allocation_counter.hpp"
 #include "support/arena_owner.hpp"
-#include "support/seam_accuracy.hpp"
 
 namespace dseam::test {
 

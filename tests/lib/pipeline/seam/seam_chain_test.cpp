@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "support/accuracy/seam_finder.hpp"
 #include "support/allocation_counter.hpp"
-#include "support/seam_finder.hpp"
 
 namespace dseam::pipeline {
 namespace {

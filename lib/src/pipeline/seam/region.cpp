@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/region.hpp"
+#include "pipeline/seam/region.hpp"
 
 #include <algorithm>
 #include <cmath>

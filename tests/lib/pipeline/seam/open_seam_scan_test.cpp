@@ -3,8 +3,8 @@
 
 #include "dseam/hal/sim/cell.hpp"
 #include "open_seam_finder.hpp"
-#include "support/fused_scan.hpp"
-#include "support/seam_accuracy.hpp"
+#include "support/accuracy/fused_scan.hpp"
+#include "support/accuracy/seam_accuracy.hpp"
 
 namespace dseam::pipeline {
 namespace {

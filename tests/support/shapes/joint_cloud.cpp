@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "support/joint_cloud.hpp"
+#include "support/shapes/joint_cloud.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/seam_scales.hpp"
+#include "pipeline/seam/seam_scales.hpp"
 
 #include "dseam/geometry/rigid_transform.hpp"
 

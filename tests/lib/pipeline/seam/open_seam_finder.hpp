@@ -6,7 +6,7 @@
 
 #include "dseam/pipeline/open_seam_chain.hpp"
 #include "support/arena_owner.hpp"
-#include "support/plate_cloud.hpp"
+#include "support/shapes/plate_cloud.hpp"
 
 namespace dseam::test {
 
