@@ -2,7 +2,7 @@
 // One cycle: read the bus, watch, decide, write the bus.
 #include <chrono>
 
-#include "dseam/hal/link_port.hpp"
+#include "dseam/hal/bus/link_port.hpp"
 #include "dseam/rt/weld_session.hpp"
 
 namespace dseam::rt {

@@ -19,7 +19,7 @@
 #include "dseam/rt/linux/thread_setup.hpp"
 #include "dseam/rt/timing/cycle_times.hpp"
 #include "hal/sim_robot/cell.hpp"
-#include "vivid.hpp"
+#include "vm/vivid/vivid.hpp"
 
 namespace dseam::test {
 namespace {

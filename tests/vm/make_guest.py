@@ -3,7 +3,7 @@
 """make_guest.py KERNEL.deb BUSYBOX OUT MODULE...: OUT/kernel and OUT/initrd of a guest.
 
 Reads a Debian kernel package without installing it. The kernel is unpacked (an emulator would take
-longer for that), the initrd holds busybox, `init` beside this script, and the named modules with all
+longer for that), the initrd holds busybox, `guest/init`, and the named modules with all
 that they depend on, in loading order."""
 import io
 import gzip
@@ -93,7 +93,7 @@ def main():
         archive.put(folder, 0o40755)
     archive.put("dev/console", 0o20600, device=(5, 1))
     archive.put("bin/busybox", 0o100755, Path(busybox).read_bytes())
-    archive.put("init", 0o100755, (Path(__file__).parent / "init").read_bytes())
+    archive.put("init", 0o100755, (Path(__file__).parent / "guest" / "init").read_bytes())
     for name in order:
         archive.put(f"m/{name}.ko", 0o100644, modules[name])
     archive.put("m/order", 0o100644, "".join(name + "\n" for name in order).encode())

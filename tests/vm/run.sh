@@ -33,12 +33,12 @@ prepare() {
   fi
   [ -n "$real" ] || { echo "test-vm needs the package $package, and apt does not know it"; exit 2; }
   mkdir -p "$folder"
-  [ "$(cat "$folder/made-of" 2>/dev/null)" = "$real $(cat "$here/init" "$here/make_guest.py" | cksum)" ] && return
+  [ "$(cat "$folder/made-of" 2>/dev/null)" = "$real $(cat "$here/guest/init" "$here/make_guest.py" | cksum)" ] && return
   rm -f "$folder"/*.deb
   (cd "$folder" && apt-get -q download "$real")
   python3 "$here/make_guest.py" "$folder"/*.deb "$(command -v busybox)" "$folder" "${modules[@]}"
   rm -f "$folder"/*.deb
-  echo "$real $(cat "$here/init" "$here/make_guest.py" | cksum)" >"$folder/made-of"
+  echo "$real $(cat "$here/guest/init" "$here/make_guest.py" | cksum)" >"$folder/made-of"
 }
 
 # boot KERNEL OUT SCRIPT QEMU-OPTION...: the script's exit code in the guest, 125 when it never got there.
@@ -56,7 +56,7 @@ boot() {
     -fsdev "local,id=out,path=$out,security_model=none,multidevs=remap" \
     -device virtio-9p-pci,fsdev=out,mount_tag=out \
     -kernel "$guest/kernel" -initrd "$guest/initrd" \
-    -append "console=ttyS0 panic=-1 quiet $append vm.run=$here/$script" </dev/null || true
+    -append "console=ttyS0 panic=-1 quiet $append vm.run=$here/guest/$script" </dev/null || true
   [ -s "$out/rc" ] && return "$(cat "$out/rc")"
   return 125
 }

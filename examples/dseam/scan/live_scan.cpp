@@ -4,7 +4,7 @@
 #include <chrono>
 #include <utility>
 
-#include "dseam/hal/paired_camera.hpp"
+#include "dseam/hal/camera/paired_camera.hpp"
 #include "failure.hpp"
 #include "scan/pose/link_poses.hpp"
 #include "scan/pose/taught_poses.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "dseam/hal/camera_info.hpp"
+#include "dseam/hal/camera/camera_info.hpp"
 #include "dseam/link/sender.hpp"
 #include "scan/live_settings.hpp"
 #include "scan/scan.hpp"

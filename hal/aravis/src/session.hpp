@@ -11,9 +11,9 @@
 #include "device.hpp"
 #include "dseam/base/random.hpp"
 #include "dseam/hal/aravis/aravis_camera.hpp"
-#include "dseam/hal/camera_counters.hpp"
-#include "dseam/hal/frame_sequence.hpp"
-#include "dseam/hal/slot_pool.hpp"
+#include "dseam/hal/camera/camera_counters.hpp"
+#include "dseam/hal/camera/frame_sequence.hpp"
+#include "dseam/hal/camera/slot_pool.hpp"
 
 namespace dseam::hal::aravis {
 

@@ -12,9 +12,9 @@
 #include <string>
 #include <thread>
 
-#include "dseam/hal/camera_counters.hpp"
-#include "dseam/hal/frame_sequence.hpp"
-#include "dseam/hal/slot_pool.hpp"
+#include "dseam/hal/camera/camera_counters.hpp"
+#include "dseam/hal/camera/frame_sequence.hpp"
+#include "dseam/hal/camera/slot_pool.hpp"
 #include "dseam/hal/v4l2/v4l2_camera.hpp"
 #include "video_stream.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "dseam/base/result.hpp"
-#include "dseam/hal/slot_pool.hpp"
+#include "dseam/hal/camera/slot_pool.hpp"
 #include "dseam/hal/v4l2/v4l2_camera.hpp"
 #include "dseam/hal/v4l2/v4l2_sys.hpp"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "dseam/hal/aravis/aravis_camera.hpp"
-#include "dseam/hal/paired_camera.hpp"
+#include "dseam/hal/camera/paired_camera.hpp"
 #include "hal/aravis/fake_gige_camera.hpp"
 
 namespace dseam::hal::aravis {

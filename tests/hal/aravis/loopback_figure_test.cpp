@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "dseam/hal/aravis/aravis_camera.hpp"
-#include "dseam/hal/slot_pool.hpp"
+#include "dseam/hal/camera/slot_pool.hpp"
 #include "hal/aravis/fake_gige_camera.hpp"
 #include "support/allocation_counter.hpp"
 

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <thread>
 
-#include "dseam/hal/camera_counters.hpp"
+#include "dseam/hal/camera/camera_counters.hpp"
 #include "dseam/hal/depth_camera.hpp"
 
 namespace dseam::hal::blank {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/hal/frame_sequence.hpp"
+#include "dseam/hal/camera/frame_sequence.hpp"
 
 #include <gtest/gtest.h>
 

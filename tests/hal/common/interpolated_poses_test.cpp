@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/hal/interpolated_poses.hpp"
+#include "dseam/hal/pose/interpolated_poses.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/hal/paired_camera.hpp"
+#include "dseam/hal/camera/paired_camera.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/hal/slot_pool.hpp"
+#include "dseam/hal/camera/slot_pool.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "dseam/hal/camera_monitor.hpp"
+#include "dseam/hal/camera/camera_monitor.hpp"
 #include "dseam/hal/fake/manual_clock.hpp"
 
 namespace dseam::hal::fake {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "dseam/hal/bus/link_port.hpp"
 #include "dseam/hal/fake/manual_clock.hpp"
-#include "dseam/hal/link_port.hpp"
 #include "dseam/hal/sim/sim_bus.hpp"
 #include "dseam/hal/sim/sim_robot.hpp"
 #include "dseam/link/weld_order.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/hal/link_probe.hpp"
+#include "dseam/hal/bus/link_probe.hpp"
 
 #include <gtest/gtest.h>
 

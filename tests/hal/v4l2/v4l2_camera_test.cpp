@@ -7,7 +7,7 @@
 #include <array>
 #include <thread>
 
-#include "dseam/hal/camera_monitor.hpp"
+#include "dseam/hal/camera/camera_monitor.hpp"
 #include "hal/v4l2/fake_v4l2_sys.hpp"
 
 namespace dseam::hal::v4l2 {

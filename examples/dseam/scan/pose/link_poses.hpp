@@ -7,9 +7,9 @@
 #include <string>
 #include <thread>
 
+#include "dseam/hal/bus/link_port.hpp"
 #include "dseam/hal/clock.hpp"
-#include "dseam/hal/interpolated_poses.hpp"
-#include "dseam/hal/link_port.hpp"
+#include "dseam/hal/pose/interpolated_poses.hpp"
 #include "dseam/hal/socketcan/socketcan_bus.hpp"
 #include "dseam/link/sender.hpp"
 #include "dseam/rt/linux/monotonic_clock.hpp"

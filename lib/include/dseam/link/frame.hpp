@@ -9,7 +9,7 @@
 namespace dseam::link {
 
 /// One CAN frame as the weld link sees it: 11-bit identifier, classic or FD.
-/// `hal/link_port.hpp` carries it to and from a CanBus.
+/// `hal/bus/link_port.hpp` carries it to and from a CanBus.
 struct Frame {
   static constexpr std::size_t kMaxSizeBytes = 64;
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "dseam/hal/link_port.hpp"
+#include "dseam/hal/bus/link_port.hpp"
 #include "dseam/link/codec.hpp"
 #include "dseam/trajectory/sampler.hpp"
 

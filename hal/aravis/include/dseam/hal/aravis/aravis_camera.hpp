@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "dseam/hal/camera_info.hpp"
+#include "dseam/hal/camera/camera_info.hpp"
 #include "dseam/hal/depth_camera.hpp"
 
 namespace dseam::hal::aravis {

@@ -8,12 +8,12 @@
 #include <span>
 
 #include "dseam/base/random.hpp"
-#include "dseam/hal/camera_counters.hpp"
+#include "dseam/hal/camera/camera_counters.hpp"
+#include "dseam/hal/camera/frame_sequence.hpp"
+#include "dseam/hal/camera/slot_pool.hpp"
 #include "dseam/hal/clock.hpp"
 #include "dseam/hal/depth_camera.hpp"
 #include "dseam/hal/fake/device_fault.hpp"
-#include "dseam/hal/frame_sequence.hpp"
-#include "dseam/hal/slot_pool.hpp"
 
 namespace dseam::hal::fake {
 

@@ -6,12 +6,12 @@
 #include <memory>
 #include <vector>
 
-#include "dseam/hal/camera_counters.hpp"
+#include "dseam/hal/camera/camera_counters.hpp"
+#include "dseam/hal/camera/slot_pool.hpp"
 #include "dseam/hal/clock.hpp"
 #include "dseam/hal/depth_camera.hpp"
+#include "dseam/hal/pose/standing_poses.hpp"
 #include "dseam/hal/replay/scan_set.hpp"
-#include "dseam/hal/slot_pool.hpp"
-#include "dseam/hal/standing_poses.hpp"
 
 namespace dseam::hal::replay {
 

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "dseam/hal/bus/send_queue.hpp"
 #include "dseam/hal/can_bus.hpp"
-#include "dseam/hal/send_queue.hpp"
 #include "dseam/hal/socketcan/can_socket.hpp"
 #include "dseam/hal/socketcan/error_frame.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "dseam/depth/sample_layout.hpp"
-#include "dseam/hal/camera_info.hpp"
+#include "dseam/hal/camera/camera_info.hpp"
 #include "dseam/hal/depth_camera.hpp"
 #include "dseam/hal/v4l2/v4l2_sys.hpp"
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "dseam/base/random.hpp"
+#include "dseam/hal/bus/send_queue.hpp"
 #include "dseam/hal/can_bus.hpp"
 #include "dseam/hal/clock.hpp"
-#include "dseam/hal/send_queue.hpp"
 
 namespace dseam::hal::sim {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "dseam/base/arena.hpp"
+#include "dseam/hal/bus/link_port.hpp"
 #include "dseam/hal/can_bus.hpp"
 #include "dseam/hal/clock.hpp"
-#include "dseam/hal/link_port.hpp"
 #include "dseam/link/receiver.hpp"
 
 namespace dseam::hal::sim {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "dseam/hal/interpolated_poses.hpp"
+#include "dseam/hal/pose/interpolated_poses.hpp"
 
 namespace dseam::hal {
 

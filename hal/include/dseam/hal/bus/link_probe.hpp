@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
+#include "dseam/hal/bus/link_port.hpp"
 #include "dseam/hal/can_bus.hpp"
 #include "dseam/hal/clock.hpp"
-#include "dseam/hal/link_port.hpp"
 #include "dseam/link/sender.hpp"
 
 namespace dseam::hal {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "dseam/base/random.hpp"
-#include "dseam/hal/paired_camera.hpp"
+#include "dseam/hal/camera/paired_camera.hpp"
 #include "vivid.hpp"
 #include "vivid_output.hpp"
 

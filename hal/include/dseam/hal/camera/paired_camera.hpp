@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "dseam/hal/camera/slot_pool.hpp"
 #include "dseam/hal/depth_camera.hpp"
-#include "dseam/hal/slot_pool.hpp"
 
 namespace dseam::hal {
 
