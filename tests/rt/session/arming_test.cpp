@@ -149,6 +149,22 @@ TEST(WeldSession, a_robot_that_is_not_there_ends_in_a_name) {
   EXPECT_EQ(cell.sender().fault(), dseam::link::Fault::kNoPeer);
 }
 
+TEST(WeldSession, a_robot_that_never_acknowledges_is_neither_armed_nor_moved) {
+  VirtualCell cell(33);
+  ASSERT_TRUE(cell.bring_to(S::kPlanned));
+  cell.robot_trouble.impostor = cell.sender().status();  // The same for ever, though it lives.
+  cell.inputs.operator_enable = true;
+  cell.cycle();
+  ASSERT_TRUE(cell.session.order(E::kArm).ok());
+
+  ASSERT_TRUE(cell.run_until([&] { return cell.session.state() == S::kSafe; }, 5000 * kMs));
+
+  EXPECT_EQ(cell.session.fault(), Fault::kLinkLost);
+  EXPECT_EQ(cell.executed(), 0U);
+  EXPECT_EQ(cell.arc_on_ns(), 0);
+  EXPECT_EQ(cell.breach(), "");
+}
+
 TEST(WeldSession, a_stop_before_the_robot_has_armed_ends_safe) {
   VirtualCell cell(19);
   ASSERT_TRUE(cell.bring_to(S::kPlanned));

@@ -40,11 +40,13 @@ TEST(WeldSession, welds_the_whole_path_and_comes_back_to_idle) {
   EXPECT_EQ(cell.breach(), "");
 }
 
-TEST(WeldSession, each_fault_while_welding_ends_safe_under_its_own_name) {
+TEST(WeldSession, each_fault_while_welding_ends_safe_under_its_own_name_or_is_borne_and_counted) {
   for (const FaultKind& kind : dseam::test::fault_kinds()) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       VirtualCell cell(seed, with_vision());
       ASSERT_TRUE(weld_half(cell)) << kind.name;
+      const std::uint64_t before = kind.counted ? kind.counted(cell) : 0;
+      const std::uint64_t tampered = cell.bus.injected;
 
       kind.begin(cell);
       cell.run(kind.lasts_ns);
@@ -57,6 +59,13 @@ TEST(WeldSession, each_fault_while_welding_ends_safe_under_its_own_name) {
       EXPECT_EQ(cell.session.state(), found == Fault::kNone ? S::kIdle : S::kSafe) << kind.name;
       EXPECT_FALSE(cell.arc_on()) << kind.name;
       EXPECT_EQ(cell.breach(), "") << kind.name;
+      if (found == Fault::kNone) {
+        ASSERT_TRUE(kind.counted) << kind.name;
+        const std::uint64_t counted = kind.counted(cell) - before;
+        EXPECT_TRUE(kind.each ? counted == cell.bus.injected - tampered : counted > 0)
+            << kind.name << ": " << counted << " of " << cell.bus.injected - tampered << ", seed "
+            << seed;
+      }
     }
   }
 }

@@ -28,6 +28,27 @@ auto robot(T member, auto value) {
   return [member, value](Cell& cell) { cell.robot_trouble.*member = value; };
 }
 
+auto camera(hal::fake::DeviceFault fault) {
+  return [fault](Cell& cell) { cell.vision.play(fault); };
+}
+
+template <typename T>
+auto health(T counter) {
+  return [counter](const Cell& cell) { return cell.session.health().*counter; };
+}
+
+/// What both ends of the link counted.
+template <typename S, typename R>
+auto link_counts(S at_host, R at_robot) {
+  return [at_host, at_robot](const Cell& cell) {
+    return cell.sender().report().*at_host + cell.robot().report().*at_robot;
+  };
+}
+
+auto verdicts(hal::CameraVerdict verdict) {
+  return [verdict](const Cell& cell) { return cell.vision.counted(verdict); };
+}
+
 const link::RobotCondition kReady{.enabled = true};
 
 void stall_three_times(Cell& cell) {
@@ -39,11 +60,34 @@ void stall_three_times(Cell& cell) {
 
 using B = BusTrouble;
 using R = RobotTrouble;
+using D = hal::fake::DeviceFault;
+using V = hal::CameraVerdict;
+using Sent = link::Sender::Report;
+using Received = link::Receiver::Report;
 
 }  // namespace
 
 const std::vector<FaultKind>& fault_kinds() {
   static const std::vector<FaultKind> kinds = {
+      {"1 camera off", camera(D::kOff), camera(D::kNone), {Fault::kVisionSilent}},
+      {"2 frames lost on their way", camera(D::kLost), camera(D::kNone), {Fault::kVisionSilent}},
+      {"3 camera stuck", camera(D::kStuck), camera(D::kNone), {Fault::kVisionSilent}},
+      {"4 garbage in the image", camera(D::kGarbage), camera(D::kNone), {Fault::kConfidenceLow}},
+      {"5 frames cut off", camera(D::kTruncated), camera(D::kNone), {Fault::kVisionSilent}},
+      {"6 frames too old", camera(D::kDelayed), camera(D::kNone), {Fault::kVisionSilent}},
+      {"7 a quarter of the frames",
+       camera(D::kSlow),
+       camera(D::kNone),
+       {Fault::kNone},
+       300 * kMs,
+       verdicts(V::kSilent)},
+      {"8 camera unplugged", camera(D::kUnplugged), camera(D::kNone), {Fault::kVisionSilent}},
+      {"9 camera's clock jumps",
+       camera(D::kClockJump),
+       camera(D::kNone),
+       {Fault::kNone},
+       300 * kMs,
+       verdicts(V::kClockJump)},
       {"12 bus takes nothing for long",
        set(&B::blocked, true),
        set(&B::blocked, false),
@@ -52,7 +96,8 @@ const std::vector<FaultKind>& fault_kinds() {
        set(&B::blocked, true),
        set(&B::blocked, false),
        {Fault::kNone},
-       8 * kMs},
+       8 * kMs,
+       health(&rt::Health::frames_dropped)},
       {"13 bus-off",
        set(&B::state, hal::BusState::kBusOff),
        set(&B::state, hal::BusState::kErrorActive),
@@ -64,7 +109,9 @@ const std::vector<FaultKind>& fault_kinds() {
       {"14 error-warning",
        set(&B::state, hal::BusState::kErrorWarning),
        set(&B::state, hal::BusState::kErrorActive),
-       {Fault::kNone}},
+       {Fault::kNone},
+       300 * kMs,
+       health(&rt::Health::bus_warnings)},
       {"15 interface down",
        set(&B::state, hal::BusState::kDown),
        set(&B::state, hal::BusState::kErrorActive),
@@ -73,10 +120,28 @@ const std::vector<FaultKind>& fault_kinds() {
        set(&B::corrupt, 0.5),
        set(&B::corrupt, 0.0),
        {Fault::kLinkLost, Fault::kPeerStopped}},
-      {"16 rare bit flips", set(&B::corrupt, 0.01), set(&B::corrupt, 0.0), {Fault::kNone}},
+      {"16 rare bit flips",
+       set(&B::corrupt, 0.01),
+       set(&B::corrupt, 0.0),
+       {Fault::kNone},
+       300 * kMs,
+       link_counts(&Sent::damaged, &Received::damaged),
+       true},
       {"17 loss", set(&B::lose, 0.8), set(&B::lose, 0.0), {Fault::kDataStale, Fault::kPeerStopped}},
-      {"17 repetition", set(&B::duplicate, 0.3), set(&B::duplicate, 0.0), {Fault::kNone}},
-      {"17 reordering", set(&B::reorder, 0.3), set(&B::reorder, 0.0), {Fault::kNone}},
+      {"17 repetition",
+       set(&B::duplicate, 0.3),
+       set(&B::duplicate, 0.0),
+       {Fault::kNone},
+       300 * kMs,
+       link_counts(&Sent::repeated, &Received::repeated),
+       true},
+      {"17 reordering",
+       set(&B::reorder, 0.3),
+       set(&B::reorder, 0.0),
+       {Fault::kNone},
+       300 * kMs,
+       link_counts(&Sent::out_of_sequence, &Received::out_of_sequence),
+       true},
       {"17 delay",
        set(&B::extra_delay_ns, 60 * kMs),
        set(&B::extra_delay_ns, 0),
@@ -131,18 +196,23 @@ const std::vector<FaultKind>& fault_kinds() {
        {Fault::kOutsideCorridor},
        800 * kMs},
       {"gate: seam in doubt",
-       [](Cell& c) { c.inputs.confidence = seam::Confidence::kNone; },
-       [](Cell& c) { c.inputs.confidence = seam::Confidence::kHigh; },
+       [](Cell& c) { c.vision.doubts = true; },
+       [](Cell& c) { c.vision.doubts = false; },
        {Fault::kConfidenceLow}},
-      {"24 one overrun", [](Cell& c) { c.stall_ns = 3 * kMs; }, nothing, {Fault::kNone}},
+      {"24 one overrun",
+       [](Cell& c) { c.stall_ns = 3 * kMs; },
+       nothing,
+       {Fault::kNone},
+       300 * kMs,
+       health(&rt::Health::overruns)},
       {"24 overruns", stall_three_times, nothing, {Fault::kOverrun}},
       {"25 suspended",
        [](Cell& c) { c.stall_ns = 3'600'000 * kMs / 1000; },
        nothing,
        {Fault::kClockJump}},
-      {"26 vision silent",
-       [](Cell& c) { c.inputs.vision_silent_ns = 500 * kMs; },
-       [](Cell& c) { c.inputs.vision_silent_ns = 0; },
+      {"26 vision thread hangs",
+       [](Cell& c) { c.vision.hangs = true; },
+       [](Cell& c) { c.vision.hangs = false; },
        {Fault::kVisionSilent}},
       {"27 privilege lost",
        [](Cell& c) { c.inputs.real_time = false; },

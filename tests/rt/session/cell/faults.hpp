@@ -17,10 +17,13 @@ struct FaultKind {
   std::function<void(VirtualCell&)> end;
   std::vector<rt::Fault> expected;  ///< Two where either end may be the first to notice.
   std::int64_t lasts_ns = 300'000'000;
+  /// What rises where it is borne: nothing goes unnoticed.
+  std::function<std::uint64_t(const VirtualCell&)> counted = {};
+  bool each = false;  ///< Once for each frame that was tampered with, no more and no less.
 };
 
-/// The runtime's and the bus' part of the catalogue (cases 12 to 30 and 40, as far as a session
-/// sees them).
+/// What of the catalogue a session meets: the camera's cases 1 to 9, the bus' and the runtime's 12
+/// to 30.
 [[nodiscard]] const std::vector<FaultKind>& fault_kinds();
 
 }  // namespace dseam::test

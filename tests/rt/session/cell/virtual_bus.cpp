@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt/session/cell/virtual_bus.hpp"
 
-#include <utility>
+#include <optional>
 
 namespace dseam::test {
 namespace {
@@ -9,63 +9,78 @@ namespace {
 constexpr std::int64_t kWireNs = 150'000;
 constexpr std::size_t kInbox = 512;
 
-void deliver(auto& way, auto& inbox, std::int64_t now_ns) {
-  while (!way.empty() && way.front().due_ns <= now_ns) {
-    inbox.push_back(way.front().frame);
-    way.pop_front();
+void deliver(auto& way, std::int64_t now_ns) {
+  while (!way.flying.empty() && way.flying.front().due_ns <= now_ns) {
+    way.arrived.push_back(way.flying.front().frame);
+    way.flying.pop_front();
   }
+}
+
+std::optional<hal::CanFrame> take(auto& way) {
+  if (way.arrived.empty()) {
+    return std::nullopt;
+  }
+  const hal::CanFrame frame = way.arrived.front();
+  way.arrived.pop_front();
+  return frame;
 }
 
 }  // namespace
 
 void VirtualBus::advance(std::int64_t now_ns) {
+  if (now_ns == now_ns_) {
+    return;
+  }
   now_ns_ = now_ns;
-  deliver(to_robot_, at_robot_, now_ns);
-  deliver(to_host_, at_host_, now_ns);
+  deliver(to_robot_, now_ns);
+  deliver(to_host_, now_ns);
   for (std::uint32_t i = 0; i < trouble.flood; ++i) {
     hal::CanFrame foreign;
     foreign.id = 0x10;
     foreign.extended = i % 2 == 0;
     foreign.size_bytes = 8;
-    at_host_.push_back(foreign);
+    to_host_.arrived.push_back(foreign);
   }
-  while (at_host_.size() > kInbox) {  // Like a socket's buffer: what comes too late is lost.
-    at_host_.pop_back();
+  while (to_host_.arrived.size() > kInbox) {  // Like a socket's buffer: what is late is lost.
+    to_host_.arrived.pop_back();
     ++overflow_;
   }
 }
 
-void VirtualBus::fly(const hal::CanFrame& frame, std::deque<Flying>& way) {
+void VirtualBus::fly(hal::CanFrame frame, Way& way) {
   if (trouble.cut || trouble.state >= hal::BusState::kBusOff || happens(trouble.lose)) {
     injected += 1;
     return;
   }
-  Flying flying{now_ns_ + kWireNs + trouble.extra_delay_ns, frame};
   if (happens(trouble.corrupt) && frame.size_bytes > 0) {
     ++injected;
     const std::uint32_t bit = random_.below(8U * frame.size_bytes);
-    flying.frame.data[bit / 8] ^= std::byte{1} << (bit % 8);
+    frame.data[bit / 8] ^= std::byte{1} << (bit % 8);
   }
-  way.push_back(flying);
+  if (!way.held && happens(trouble.reorder)) {
+    way.held = frame;
+    return;
+  }
+  const std::int64_t due_ns = now_ns_ + kWireNs + trouble.extra_delay_ns;
+  way.flying.push_back({due_ns, frame});
   if (happens(trouble.duplicate)) {
     ++injected;
-    way.push_back(flying);
+    way.flying.push_back({due_ns, frame});
   }
-  if (way.size() > 1 && happens(trouble.reorder)) {
-    ++injected;
-    std::swap(way[way.size() - 1].frame, way[way.size() - 2].frame);
+  const bool overtaken = way.held && way.held->id == frame.id;
+  if (overtaken || (way.held && trouble.reorder <= 0.0)) {
+    injected += overtaken ? 1U : 0U;
+    way.flying.push_back({due_ns, *way.held});
+    way.held.reset();
   }
 }
 
 void VirtualBus::robot_send(const hal::CanFrame& frame) { fly(frame, to_host_); }
 
 bool VirtualBus::robot_receive(hal::CanFrame& frame) {
-  if (at_robot_.empty()) {
-    return false;
-  }
-  frame = at_robot_.front();
-  at_robot_.pop_front();
-  return true;
+  const auto arrived = take(to_robot_);
+  frame = arrived.value_or(frame);
+  return arrived.has_value();
 }
 
 Result<> VirtualBus::do_send(const hal::CanFrame& frame) noexcept {
@@ -81,19 +96,16 @@ Result<> VirtualBus::do_send(const hal::CanFrame& frame) noexcept {
 }
 
 Result<hal::CanFrame> VirtualBus::do_receive(std::chrono::nanoseconds) noexcept {
-  if (at_host_.empty()) {
-    return Errc::kTimeout;
-  }
-  const hal::CanFrame frame = at_host_.front();
-  at_host_.pop_front();
-  return frame;
+  const auto arrived = take(to_host_);
+  return arrived ? Result<hal::CanFrame>(*arrived) : Errc::kTimeout;
 }
 
 Result<> VirtualBus::do_purge() noexcept {
   if (trouble.purge_fails) {
     return Errc::kIo;
   }
-  to_robot_.clear();
+  to_robot_.flying.clear();
+  to_robot_.held.reset();
   return {};
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "dseam/base/random.hpp"
@@ -16,7 +17,7 @@ struct BusTrouble {
   double lose = 0.0;  ///< Share of frames.
   double corrupt = 0.0;
   double duplicate = 0.0;
-  double reorder = 0.0;
+  double reorder = 0.0;  ///< Overtaken by the next one of their kind.
   std::int64_t extra_delay_ns = 0;
   bool blocked = false;  ///< The host's queue takes nothing.
   bool purge_fails = false;
@@ -30,7 +31,7 @@ class VirtualBus final : public hal::CanBus {
  public:
   explicit VirtualBus(std::uint64_t seed) : random_(seed, 7) {}
 
-  /// Moves what is due; call before either side reads.
+  /// Moves what is due; call before either side reads. Twice in a moment is once.
   void advance(std::int64_t now_ns);
   void robot_send(const hal::CanFrame& frame);
   bool robot_receive(hal::CanFrame& frame);
@@ -48,16 +49,19 @@ class VirtualBus final : public hal::CanBus {
   Result<hal::CanFrame> do_receive(std::chrono::nanoseconds timeout) noexcept override;
   Result<> do_purge() noexcept override;
   [[nodiscard]] hal::BusHealth do_health() const noexcept override;
-  void fly(const hal::CanFrame& frame, std::deque<Flying>& way);
+  struct Way {
+    std::deque<Flying> flying;
+    std::optional<hal::CanFrame> held;  ///< Waits to be overtaken.
+    std::deque<hal::CanFrame> arrived;
+  };
+  void fly(hal::CanFrame frame, Way& way);
   bool happens(double share) { return share > 0.0 && random_.uniform() < share; }
 
   Pcg32 random_;
   std::int64_t now_ns_ = 0;
   std::uint64_t overflow_ = 0;
-  std::deque<Flying> to_robot_;
-  std::deque<Flying> to_host_;
-  std::deque<hal::CanFrame> at_robot_;
-  std::deque<hal::CanFrame> at_host_;
+  Way to_robot_;
+  Way to_host_;
 };
 
 }  // namespace dseam::test

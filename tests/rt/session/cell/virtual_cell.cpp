@@ -46,6 +46,7 @@ std::vector<trajectory::SetPoint> VirtualCell::weld_points() {
 VirtualCell::VirtualCell(std::uint64_t seed, rt::WeldSession::Config config)
     : clock(10 * kMs),
       bus(seed),
+      vision(seed, clock),
       points_(weld_points()),
       memory_(link::Receiver::bytes(kRobotPoints)),
       sender_(link::Sender::make({}).value()),
@@ -63,21 +64,35 @@ void VirtualCell::run(std::int64_t ns) {
 }
 
 void VirtualCell::cycle() {
-  const std::int64_t due_ns = now_ns() + kPeriodNs;
-  // While the host stalls the robot lives on.
-  const std::int64_t end_ns = due_ns + stall_ns;
-  while (now_ns() + kPeriodNs <= end_ns) {
+  bus.sent_this_cycle.clear();
+  const std::int64_t end_ns = now_ns() + kPeriodNs + stall_ns;
+  while (now_ns() + kPeriodNs < end_ns) {  // While the host stalls the others live on.
     clock.advance(kPeriodNs);
     robot_cycle();
+    vision.step();
   }
+  clock.advance(kPeriodNs);
+  const bool host_first = random_.below(4) == 0;
+  if (host_first) {
+    host_cycle();
+  }
+  robot_cycle();
+  vision.step();
+  if (!host_first) {
+    host_cycle();
+  }
+  check();
+}
+
+void VirtualCell::host_cycle() {
+  bus.advance(now_ns());
   inputs.tick.due_ns = now_ns();
   inputs.tick.woke_ns = now_ns() + random_.below(50'000);
   inputs.tick.skipped = static_cast<std::uint64_t>(stall_ns / kPeriodNs);
   inputs.tick.gap = stall_ns > 50 * kMs;
   stall_ns = 0;
-  bus.sent_this_cycle.clear();
+  vision.tell(inputs);
   session.step(inputs);
-  check();
 }
 
 void VirtualCell::robot_cycle() {
@@ -213,6 +228,11 @@ bool VirtualCell::bring_to(rt::SessionState wanted) {
   if (wanted == S::kPlanned) {
     return at(S::kPlanned);
   }
+  // Nobody enables the weld before the camera sees the seam again.
+  const auto sees = [&] {
+    return inputs.vision_silent_ns < 100 * kMs && inputs.confidence == seam::Confidence::kHigh;
+  };
+  (void)run_until(sees, 1000 * kMs);
   inputs.operator_enable = true;
   cycle();
   (void)session.order(E::kArm);

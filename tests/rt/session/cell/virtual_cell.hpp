@@ -11,6 +11,7 @@
 #include "dseam/link/receiver.hpp"
 #include "dseam/rt/weld_session.hpp"
 #include "rt/session/cell/virtual_bus.hpp"
+#include "rt/session/cell/virtual_vision.hpp"
 #include "support/arena_owner.hpp"
 
 namespace dseam::test {
@@ -26,8 +27,9 @@ struct RobotTrouble {
   std::optional<link::Status> impostor;             ///< Or somebody else speaks in its place.
 };
 
-/// A host, a bus and a robot in one thread, under one virtual clock, driven by one seed. What must
-/// hold at all times is checked in every cycle; the first breach is kept as text.
+/// A host, a bus, a robot and a camera in one thread, under one virtual clock, driven by one seed,
+/// which also says who comes first. What must hold at all times is checked in every cycle; the
+/// first breach is kept as text.
 class VirtualCell {
  public:
   static constexpr std::int64_t kPeriodNs = 1'000'000;
@@ -64,12 +66,14 @@ class VirtualCell {
 
   hal::fake::ManualClock clock;
   VirtualBus bus;
+  VirtualVision vision;
   RobotTrouble robot_trouble;
   rt::WeldSession::Inputs inputs;
   std::int64_t stall_ns = 0;  ///< The next cycle takes so much longer.
 
  private:
   static std::vector<trajectory::SetPoint> weld_points();
+  void host_cycle();
   void robot_cycle();
   void move_robot();
   void speak(const Buffer<link::Frame>& frames);
