@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "lib/torch/planned_curve.hpp"
 
@@ -43,6 +44,56 @@ TEST(PathPlanner, a_pass_lies_where_its_offsets_say_and_turns_by_its_angle) {
     const double turned =
         point.pose.q_base_torch.angularDistance(nearest.pose.q_base_torch) / kDegree;
     EXPECT_NEAR(turned, point.pass == 1 ? 10.0 : 0.0, 1.0);
+  }
+}
+
+TEST(PathPlanner, a_pass_starts_past_the_first_one_by_its_shift) {
+  const Curve curve;
+  PathPlanner::Config config;
+  config.num_passes = 3;
+  config.start_mm = 20.0;
+  config.passes[1].start_shift_mm = 30.0;
+  config.passes[2].start_shift_mm = -25.0;
+
+  const Path path = plan(config, curve.view());
+
+  const double starts_mm[] = {20.0, 50.0, curve.length_mm - 5.0};
+  const auto burnt = burning(path);
+  for (std::uint8_t pass = 0; pass < 3; ++pass) {
+    const auto first = std::find_if(burnt.begin(), burnt.end(),
+                                    [pass](const PathPoint& p) { return p.pass == pass; });
+    ASSERT_NE(first, burnt.end());
+    EXPECT_NEAR(curve.nearest(first->pose.p_base).s_mm, starts_mm[pass], 0.5);
+  }
+}
+
+TEST(PathPlanner, each_arc_of_the_loop_has_its_own_row_of_welding_parameters) {
+  const Curve curve;
+  PathPlanner::Config config;
+  config.start_mm = 40.0;
+  config.passes[0].schedule = 1;
+  config.passes[0].crater_schedule = 2;
+  config.num_sectors = 3;
+  config.sectors[0] = {0.0, 1e4, 1, 0};  // Of another pass.
+  config.sectors[1] = {60.0, 100.0, 0, 3};
+  config.sectors[2] = {curve.length_mm - 20.0, 30.0, 0, 4};  // Over the curve's start.
+
+  const Path path = plan(config, curve.view());
+
+  std::array<double, 5> burnt_mm{};
+  for (std::size_t i = 0; i + 1 < path.points.size(); ++i) {
+    const PathPoint& point = path.points[i];
+    burnt_mm[point.schedule] += point.arc ? path.points[i + 1].s_mm - point.s_mm : 0.0;
+    EXPECT_EQ(point.schedule == 2, point.segment == Segment::kCrater);
+  }
+  EXPECT_EQ(burnt_mm[0], 0.0);
+  EXPECT_NEAR(burnt_mm[3], 40.0, 1.0);
+  EXPECT_NEAR(burnt_mm[4], 50.0, 1.0);
+  EXPECT_NEAR(burnt_mm[1], curve.length_mm + 10.0 - 90.0, 2.0);
+  for (const PathPoint& point : burning(path)) {
+    const double s_mm = curve.nearest(point.pose.p_base).s_mm;
+    EXPECT_TRUE(point.schedule != 3 || (s_mm > 59.0 && s_mm < 101.0)) << s_mm;
+    EXPECT_TRUE(point.schedule != 4 || s_mm > curve.length_mm - 21.0 || s_mm < 31.0) << s_mm;
   }
 }
 

@@ -50,6 +50,36 @@ TEST(PathPlanner, lays_every_segment_once_and_in_order) {
                                          Segment::kRetract}));
 }
 
+TEST(PathPlanner, comes_and_goes_along_the_wire_from_the_height_asked_for_slowly_at_the_end) {
+  const Curve curve;
+  PathPlanner::Config config;
+  config.approach_mm = 60.0;
+  config.lead_in_mm = 8.0;
+
+  const Path path = plan(config, curve.view());
+
+  const auto height_mm = [](const PathPoint& p, const PathPoint& bead) {
+    const Vector3d up = -(bead.pose.q_base_torch * Vector3d::UnitZ());
+    const Vector3d off = p.pose.p_base - bead.pose.p_base;
+    EXPECT_NEAR(off.norm(), off.dot(up), 1e-6);  // Along the wire and nowhere else.
+    return off.dot(up);
+  };
+  const auto burnt = burning(path);
+  EXPECT_NEAR(height_mm(path.points.front(), burnt.front()), 60.0, 1e-9);
+  const auto crater = std::find_if(path.points.begin(), path.points.end(), [](const PathPoint& p) {
+    return p.segment == Segment::kCrater;
+  });
+  ASSERT_NE(crater, path.points.end());
+  EXPECT_NEAR(height_mm(path.points.back(), *crater), 60.0, 1e-9);
+  for (const PathPoint& point : path.points) {
+    if (point.segment == Segment::kLeadIn) {
+      EXPECT_LE(height_mm(point, burnt.front()), 8.0 + 1e-9);
+      EXPECT_EQ(point.speed_mm_s, 20.0);
+    }
+    EXPECT_TRUE(point.segment != Segment::kApproach || point.speed_mm_s == 100.0);
+  }
+}
+
 TEST(PathPlanner, the_overlap_passes_the_start_by_the_length_or_the_angle_asked_for) {
   const Curve curve;
   PathPlanner::Config by_angle;
@@ -189,6 +219,11 @@ TEST(PathPlanner, values_out_of_range_are_refused) {
     c.passes[0].weave = {dseam::torch::WeaveShape::kSine, 1.0, 0.0};
   }));
   EXPECT_TRUE(refused([](auto& c) { c.resume.run_up_mm = -1.0; }));
+  EXPECT_TRUE(refused([](auto& c) { c.num_sectors = 17; }));
+  EXPECT_TRUE(refused([](auto& c) {
+    c.num_sectors = 1;
+    c.sectors[0].to_mm = kNan;
+  }));
 }
 
 }  // namespace

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/torch/torch_planner.hpp"
-
-#include <gtest/gtest.h>
-
 #include <limits>
 
 #include "dseam/base/random.hpp"
-#include "support/allocation_counter.hpp"
-#include "support/arena_owner.hpp"
-#include "support/shapes/analytic_saddle.hpp"
+#include "lib/torch/planned_torch.hpp"
 
 namespace {
 
 using dseam::seam::SeamPoint;
+using dseam::test::kMaxSeamPoints;
+using dseam::test::plan_torch;
+using dseam::test::PlannedTorch;
 using dseam::test::Saddle;
 using dseam::torch::TorchPlanner;
 using dseam::torch::TorchPoint;
@@ -20,30 +17,6 @@ using dseam::torch::Weldable;
 using Eigen::Vector3d;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr std::size_t kMaxPoints = 4000;
-
-struct Planned {
-  TorchPlanner::Report report;
-  std::vector<TorchPoint> points;
-};
-
-Planned plan(const TorchPlanner::Config& config, const dseam::seam::SeamView& seam,
-             std::size_t room = kMaxPoints) {
-  dseam::test::ArenaOwner owner(TorchPlanner::bytes(kMaxPoints));
-  TorchPlanner planner = TorchPlanner::make(config, kMaxPoints, owner.arena()).value();
-  std::vector<TorchPoint> storage(room);
-  dseam::Buffer<TorchPoint> out(storage);
-  const dseam::test::AllocationCounter counter;
-  Planned planned{planner.run(seam, out), {}};
-  EXPECT_EQ(counter.count(), 0U);
-  planned.points.assign(out.view().begin(), out.view().end());
-  return planned;
-}
-
-double angle(const Vector3d& a, const Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 /// Angle of the torch's body over the shell in the plane across the true tangent.
 double work_angle(const SeamPoint& truth, const TorchPoint& torch) {
   Vector3d body = -(torch.pose.q_base_torch * Vector3d::UnitZ());
@@ -69,7 +42,7 @@ TEST(TorchPlanner, work_and_travel_angle_are_within_half_a_degree_of_the_closed_
         config.reversed = reversed;
         const auto points = saddle.points(count);
 
-        const Planned planned = plan(config, dseam::test::view_of(points));
+        const PlannedTorch planned = plan_torch(config, dseam::test::view_of(points));
 
         ASSERT_EQ(planned.report.state, TorchPlanner::State::kPlanned);
         for (const TorchPoint& point : planned.points) {
@@ -110,7 +83,7 @@ TEST(TorchPlanner, half_a_degree_also_holds_with_noise_on_normals_and_points) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const auto points = noisy(saddle.points(720), seed);
 
-      const Planned planned = plan(config, dseam::test::view_of(points));
+      const PlannedTorch planned = plan_torch(config, dseam::test::view_of(points));
 
       for (const TorchPoint& point : planned.points) {
         const SeamPoint truth = saddle.at(saddle.angle_of(point.pose.p_base));
@@ -126,7 +99,7 @@ TEST(TorchPlanner, smoothing_leaves_a_small_nozzle_its_angles) {
   for (const Saddle& saddle : kSmallSaddles) {
     const auto points = saddle.points(360);
 
-    const Planned planned = plan({}, dseam::test::view_of(points));
+    const PlannedTorch planned = plan_torch({}, dseam::test::view_of(points));
 
     for (const TorchPoint& point : planned.points) {
       const SeamPoint truth = saddle.at(saddle.angle_of(point.pose.p_base));
@@ -141,92 +114,11 @@ TEST(TorchPlanner, arc_length_is_that_of_the_curve_and_not_of_its_chords) {
   for (const Saddle& saddle : kSaddles) {
     const auto points = saddle.points(120);
 
-    const Planned planned = plan({}, dseam::test::view_of(points));
+    const PlannedTorch planned = plan_torch({}, dseam::test::view_of(points));
 
     const double truth_mm = saddle.length_mm();
     EXPECT_NEAR(planned.report.length_mm, truth_mm, 1e-4 * truth_mm);
   }
-}
-
-TEST(TorchPlanner, the_contact_tip_keeps_its_clearance_or_the_point_says_so) {
-  const auto points = Saddle{100.0, 40.0, 60 * kDegree, 0.0}.points(360);
-  TorchPlanner::Config config;
-  config.tip_radius_mm = 8.0;
-  config.min_clearance_mm = 2.0;
-
-  const Planned planned = plan(config, dseam::test::view_of(points));
-
-  std::size_t touching = 0;
-  for (const TorchPoint& point : planned.points) {
-    const double half = 0.5 * point.dihedral_rad;
-    EXPECT_NEAR(point.clearance_mm, 15.0 * std::sin(half) - 8.0 * std::cos(half), 1e-6);
-    EXPECT_EQ(point.weldable == Weldable::kNoClearance, point.clearance_mm < 2.0);
-    touching += point.clearance_mm < 2.0 ? 1 : 0;
-  }
-  EXPECT_GT(touching, 0U);
-  EXPECT_LT(touching, planned.points.size());
-}
-
-TEST(TorchPlanner, the_tilt_limit_holds_and_costs_the_weld_where_it_takes_too_much) {
-  const auto points = Saddle{100.0, 60.0, 60 * kDegree, 0.0}.points(360);
-  TorchPlanner::Config config;
-  config.max_tilt_rad = 45 * kDegree;
-
-  const Planned planned = plan(config, dseam::test::view_of(points));
-
-  for (const TorchPoint& point : planned.points) {
-    const Vector3d body = -(point.pose.q_base_torch * Vector3d::UnitZ());
-    EXPECT_LT(angle(body, Vector3d::UnitZ()), 45.0001 * kDegree);
-  }
-  EXPECT_GT(planned.report.by_weldable[static_cast<std::size_t>(Weldable::kTilt)], 0U);
-  EXPECT_GT(planned.report.by_weldable[static_cast<std::size_t>(Weldable::kYes)], 0U);
-}
-
-TEST(TorchPlanner, interpolated_doubtful_and_gaping_points_are_not_weldable) {
-  auto points = Saddle{}.points(360);
-  for (std::size_t i = 0; i < 360; ++i) {
-    points[i].source = i < 90 ? dseam::seam::Source::kInterpolated : points[i].source;
-    points[i].confidence =
-        i >= 90 && i < 180 ? dseam::seam::Confidence::kNone : points[i].confidence;
-    points[i].gap_mm = i >= 180 && i < 270 ? 7.0 : 0.0;
-  }
-
-  const Planned planned = plan({}, dseam::test::view_of(points));
-
-  for (const Weldable reason :
-       {Weldable::kInterpolated, Weldable::kLowConfidence, Weldable::kGap, Weldable::kYes}) {
-    EXPECT_NEAR(planned.report.by_weldable[static_cast<std::size_t>(reason)],
-                static_cast<double>(planned.points.size()) / 4.0, 6.0);
-  }
-}
-
-TEST(TorchPlanner, interpolated_points_are_weldable_when_the_configuration_allows_it) {
-  auto points = Saddle{}.points(360);
-  points[5].source = dseam::seam::Source::kInterpolated;
-  points[5].confidence = dseam::seam::Confidence::kLow;
-  TorchPlanner::Config config;
-  config.weld_interpolated = true;
-
-  const Planned planned = plan(config, dseam::test::view_of(points));
-
-  EXPECT_EQ(planned.report.by_weldable[static_cast<std::size_t>(Weldable::kYes)],
-            planned.points.size());
-}
-
-TEST(TorchPlanner, interpolated_points_below_the_confidence_asked_for_are_not_weldable_either) {
-  auto points = Saddle{}.points(360);
-  for (std::size_t i = 0; i < 90; ++i) {
-    points[i].source = dseam::seam::Source::kInterpolated;
-    points[i].confidence = dseam::seam::Confidence::kNone;
-  }
-  TorchPlanner::Config config;
-  config.weld_interpolated = true;
-
-  const Planned planned = plan(config, dseam::test::view_of(points));
-
-  const auto low = static_cast<std::size_t>(Weldable::kLowConfidence);
-  EXPECT_NEAR(planned.report.by_weldable[low], static_cast<double>(planned.points.size()) / 4.0,
-              6.0);
 }
 
 TEST(TorchPlanner, a_joint_without_two_normals_is_degenerate_and_keeps_the_last_orientation) {
@@ -238,9 +130,9 @@ TEST(TorchPlanner, a_joint_without_two_normals_is_degenerate_and_keeps_the_last_
     points[i].n_nozzle.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
 
-  const Planned planned = plan({}, dseam::test::view_of(points));
+  const PlannedTorch planned = plan_torch({}, dseam::test::view_of(points));
 
-  EXPECT_GT(planned.report.by_weldable[static_cast<std::size_t>(Weldable::kDegenerate)], 60U);
+  EXPECT_GT(planned.count(Weldable::kDegenerate), 60U);
   for (const TorchPoint& point : planned.points) {
     EXPECT_NEAR(point.pose.q_base_torch.norm(), 1.0, 1e-9);
   }
@@ -252,15 +144,15 @@ TEST(TorchPlanner, bad_seams_are_named) {
   nan[3].p_base.x() = std::numeric_limits<double>::quiet_NaN();
   auto twice = good;
   twice[4].p_base = twice[3].p_base;
-  const auto too_long = Saddle{}.points(kMaxPoints + 1);
+  const auto too_long = Saddle{}.points(kMaxSeamPoints + 1);
 
-  EXPECT_EQ(plan({}, {}).report.state, TorchPlanner::State::kNoSeam);
-  EXPECT_EQ(plan({}, {.points = std::span(good).first(3)}).report.state,
+  EXPECT_EQ(plan_torch({}, {}).report.state, TorchPlanner::State::kNoSeam);
+  EXPECT_EQ(plan_torch({}, {.points = std::span(good).first(3)}).report.state,
             TorchPlanner::State::kNoSeam);
-  EXPECT_EQ(plan({}, {.points = nan}).report.state, TorchPlanner::State::kBadPoint);
-  EXPECT_EQ(plan({}, {.points = twice}).report.state, TorchPlanner::State::kBadPoint);
-  EXPECT_EQ(plan({}, {.points = too_long}).report.state, TorchPlanner::State::kTooLong);
-  EXPECT_EQ(plan({}, {.points = good}, 20).report.state, TorchPlanner::State::kFull);
+  EXPECT_EQ(plan_torch({}, {.points = nan}).report.state, TorchPlanner::State::kBadPoint);
+  EXPECT_EQ(plan_torch({}, {.points = twice}).report.state, TorchPlanner::State::kBadPoint);
+  EXPECT_EQ(plan_torch({}, {.points = too_long}).report.state, TorchPlanner::State::kTooLong);
+  EXPECT_EQ(plan_torch({}, {.points = good}, 20).report.state, TorchPlanner::State::kFull);
 }
 
 TEST(TorchPlanner, an_open_seam_keeps_both_its_ends) {
@@ -269,7 +161,7 @@ TEST(TorchPlanner, an_open_seam_keeps_both_its_ends) {
   dseam::seam::SeamView view = dseam::test::view_of(points);
   view.closed = false;
 
-  const Planned planned = plan({}, view);
+  const PlannedTorch planned = plan_torch({}, view);
 
   EXPECT_LT((planned.points.front().pose.p_base - points.front().p_base).norm(), 1e-9);
   EXPECT_LT((planned.points.back().pose.p_base - points.back().p_base).norm(), 1e-6);

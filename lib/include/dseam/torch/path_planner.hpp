@@ -25,6 +25,14 @@ struct Pass {
   std::uint8_t crater_schedule = 0;  ///< and the one that fills the crater.
 };
 
+/// An arc of the loop on which a pass has welding parameters of its own: flat, uphill, overhead.
+struct Sector {
+  double from_mm = 0.0;  ///< Arc length on the torch curve;
+  double to_mm = 0.0;    ///< less than `from_mm` where it leads over the curve's first point.
+  std::uint8_t pass = 0;
+  std::uint8_t schedule = 0;
+};
+
 /// What lies before the torch when it takes up a bead that was broken off.
 struct Resume {
   bool active = false;
@@ -47,9 +55,12 @@ struct Resume {
 class PathPlanner {
  public:
   static constexpr std::size_t kMaxPasses = 8;
+  static constexpr std::size_t kMaxSectors = 16;
   struct Config {
     std::array<Pass, kMaxPasses> passes{};
     std::uint8_t num_passes = 1;
+    std::array<Sector, kMaxSectors> sectors{};  ///< Elsewhere the pass' own schedule holds.
+    std::uint8_t num_sectors = 0;
     double start_mm = 0.0;      ///< Arc length of the start on the torch curve.
     double overlap_mm = 10.0;   ///< Past the start, on closed curves,
     double overlap_rad = 0.0;   ///< or this share of a turn when it is greater than zero.

@@ -17,12 +17,6 @@ Eigen::Quaterniond about(const Vector3d& axis, double angle_rad) noexcept {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, axis));
 }
 
-/// `s` from that point of the seam on; its confidence matters only where the arc burns.
-Stroke over(const TorchPoint& point, Stroke s) noexcept {
-  s.confidence = s.arc ? point.confidence : seam::Confidence::kHigh;
-  return s;
-}
-
 }  // namespace
 
 TorchPose lifted(const TorchPose& pose, double height_mm) noexcept {
@@ -66,6 +60,28 @@ TorchPose BeadWriter::woven(const TorchPose& pose, double x_mm) const noexcept {
   return {
       pose.p_base + pose.q_base_torch * Vector3d(offset.along_mm, offset.across_mm, -offset.out_mm),
       pose.q_base_torch};
+}
+
+std::uint8_t BeadWriter::schedule_at(double s_mm) const noexcept {
+  const double length = curve_.length_mm();
+  const double s = curve_.closed() ? s_mm - length * std::floor(s_mm / length) : s_mm;
+  for (std::size_t i = 0; i < config_.num_sectors; ++i) {
+    const Sector& sector = config_.sectors[i];
+    const bool after = s >= sector.from_mm;
+    const bool before = s < sector.to_mm;
+    const bool inside = sector.from_mm <= sector.to_mm ? after && before : after || before;
+    if (inside && sector.pass == index_) {
+      return sector.schedule;
+    }
+  }
+  return pass_->schedule;
+}
+
+/// The confidence matters only where the arc burns; a crater is filled everywhere alike.
+Stroke BeadWriter::over(const TorchPoint& point, Stroke s) const noexcept {
+  s.confidence = s.arc ? point.confidence : seam::Confidence::kHigh;
+  s.schedule = s.segment == Segment::kCrater ? s.schedule : schedule_at(point.s_mm);
+  return s;
 }
 
 /// Turn about the wire along the bead in hand.

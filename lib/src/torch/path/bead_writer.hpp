@@ -42,6 +42,10 @@ class BeadWriter {
     return curve_.at(start_mm_ + x_mm);
   }
 
+  [[nodiscard]] std::uint8_t schedule_at(double s_mm) const noexcept;
+  /// `s` with what belongs to that point of the seam.
+  [[nodiscard]] Stroke over(const TorchPoint& point, Stroke s) const noexcept;
+
   [[nodiscard]] double bead_turn() const noexcept;
   [[nodiscard]] double wrist_after(double way_mm) const noexcept;
   [[nodiscard]] double way_to_next_bead() const noexcept;

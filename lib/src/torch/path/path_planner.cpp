@@ -17,6 +17,8 @@ bool is_valid(const Pass& p) noexcept {
          in(p.start_shift_mm, -1e4, 1e4) && is_valid(p.weave);
 }
 
+bool is_valid(const Sector& s) noexcept { return in(s.from_mm, 0.0, 1e5) && in(s.to_mm, 0.0, 1e5); }
+
 bool is_valid(const PathPlanner::Config& c) noexcept {
   const bool lengths = in(c.start_mm, -1e5, 1e5) && in(c.overlap_mm, 0.0, 1e4) &&
                        in(c.overlap_rad, 0.0, 6.2) && in(c.lead_in_mm, 0.0, 500.0) &&
@@ -28,10 +30,12 @@ bool is_valid(const PathPlanner::Config& c) noexcept {
                     in(c.preflow_s, 0.0, 60.0) && in(c.ignition_s, 0.0, 60.0) &&
                     in(c.crater_s, 0.0, 60.0) && in(c.postflow_s, 0.0, 60.0) &&
                     in(c.max_wrist_turn_rad, 0.1, 100.0);
-  const std::size_t n = c.num_passes;
-  return lengths && rest && n >= 1 && n <= PathPlanner::kMaxPasses &&
-         std::all_of(c.passes.begin(), c.passes.begin() + c.num_passes,
-                     [](const Pass& p) { return is_valid(p); });
+  const auto valid = [](const auto& item) { return is_valid(item); };
+  const bool counts = c.num_passes >= 1 && c.num_passes <= PathPlanner::kMaxPasses &&
+                      c.num_sectors <= PathPlanner::kMaxSectors;
+  return lengths && rest && counts &&
+         std::all_of(c.passes.begin(), c.passes.begin() + c.num_passes, valid) &&
+         std::all_of(c.sectors.begin(), c.sectors.begin() + c.num_sectors, valid);
 }
 
 /// Finds the next weldable stretch of a pass from `x_mm` on; false when there is none.
