@@ -95,6 +95,61 @@ TEST(WeldRun, the_torch_welds_once_round_and_over_the_start_at_constant_speed_on
   }
 }
 
+double distance_to_segment(const Eigen::Vector3d& p, const PathPoint& a, const PathPoint& b) {
+  const Eigen::Vector3d along = b.pose.p_base - a.pose.p_base;
+  const Eigen::Vector3d from = p - a.pose.p_base;
+  const double u = std::clamp(from.dot(along) / std::max(along.squaredNorm(), 1e-12), 0.0, 1.0);
+  return (from - u * along).norm();
+}
+
+/// How far a set point lies off a path that is so fine that its points are the path.
+double off_path_mm(const SetPoint& point, const std::vector<PathPoint>& path, std::size_t& near) {
+  constexpr double kAroundMm = 0.3;
+  while (near + 1 < path.size() && path[near].s_mm < point.s_mm - kAroundMm) {
+    ++near;
+  }
+  double least_mm = 1e9;
+  for (std::size_t i = near; i + 1 < path.size() && path[i].s_mm < point.s_mm + kAroundMm; ++i) {
+    least_mm = std::min(least_mm, distance_to_segment(point.pose.p_base, path[i], path[i + 1]));
+  }
+  return least_mm;
+}
+
+TEST(WeldRun, a_woven_or_shifted_pass_keeps_its_path_and_its_speed_along_the_seam) {
+  using dseam::torch::WeaveShape;
+  PathPlanner::Config sine;
+  sine.passes[0].weave = {WeaveShape::kSine, 2.0, 8.0};
+  PathPlanner::Config circle;
+  circle.passes[0].weave = {WeaveShape::kCircle, 1.0, 6.0};
+  PathPlanner::Config dwelling;
+  dwelling.passes[0].weave = {WeaveShape::kSine, 2.0, 10.0, 1.0, 0.5};
+  PathPlanner::Config shifted;
+  shifted.passes[0].across_mm = 3.0;
+  shifted.passes[0].out_mm = 3.0;
+  for (PathPlanner::Config config : {sine, circle, dwelling, shifted}) {
+    const WeldRun weld = run(kSaddles[2], config, 1000);
+    config.step_mm = 0.02;
+    const WeldRun fine = run(kSaddles[2], config, 100'000);
+
+    ASSERT_EQ(fine.report.state, PathPlanner::State::kPlanned);
+    std::size_t near = 0;
+    std::size_t steady = 0;
+    for (std::size_t i = 1; i < weld.set_points.size(); ++i) {
+      const SetPoint& a = weld.set_points[i - 1];
+      const SetPoint& b = weld.set_points[i];
+      if (!a.arc || !b.arc) {
+        continue;
+      }
+      EXPECT_LT(off_path_mm(b, fine.path, near), 0.01) << b.s_mm;
+      if (a.limited_by == LimitKind::kNone && b.limited_by == LimitKind::kNone) {
+        ++steady;
+        EXPECT_NEAR((b.s_mm - a.s_mm) / 1e-3, 8.0, 0.08);
+      }
+    }
+    EXPECT_GT(steady, weld.set_points.size() / 2);
+  }
+}
+
 TEST(WeldRun, at_a_hundred_hertz_the_torch_turns_by_at_most_half_a_degree_in_a_step) {
   for (const dseam::test::Saddle& saddle : kSaddles) {
     const WeldRun weld = run(saddle, {}, 10'000);
