@@ -9,7 +9,7 @@
 namespace dseam::rt {
 
 /// Hands the newest value from one thread to another: newest wins, nothing is queued, neither side
-/// waits. `tests/model/latest_value.pml` is the same protocol, checked exhaustively.
+/// waits. `tests/rt/model/latest_value.pml` is the same protocol, checked exhaustively.
 ///
 /// The writer owns one of three slots, the reader another, and the third lies in between with a
 /// mark that says whether it holds something new. write() and read() swap their own slot for it.
