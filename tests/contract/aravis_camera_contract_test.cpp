@@ -3,7 +3,7 @@
 
 #include "depth_camera_contract.hpp"
 #include "dseam/hal/aravis/aravis_camera.hpp"
-#include "hal/aravis/fake_gige_camera.hpp"
+#include "hal/aravis/fake/fake_gige_camera.hpp"
 
 namespace dseam::test {
 namespace {

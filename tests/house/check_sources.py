@@ -52,7 +52,7 @@ MACHINE = re.compile(r"(?<![\w.])/(?:home|root|work|Users)/")
 # A step of the wall clock (NTP, summer time, suspend) must not be felt: all time is monotonic.
 WALL_CLOCK = re.compile(r"CLOCK_REALTIME|system_clock|gettimeofday|[^\w]time\(nullptr\)")
 # Aravis stamps frames by the wall clock; only the age of a frame is taken from it.
-READS_WALL_CLOCK = {"hal/aravis/src/session_frames.cpp"}
+READS_WALL_CLOCK = {"hal/aravis/src/session/session_frames.cpp"}
 
 
 def files_of(root):

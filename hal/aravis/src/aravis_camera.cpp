@@ -3,17 +3,22 @@
 
 #include <utility>
 
-#include "session.hpp"
+#include "session/session.hpp"
 
 namespace dseam::hal::aravis {
 
 Result<std::unique_ptr<AravisCamera>> AravisCamera::open(const AravisConfig& config,
                                                          std::string& problem) {
-  auto device = connect(config, problem);
+  return open(config, aravis_library(), problem);
+}
+
+Result<std::unique_ptr<AravisCamera>> AravisCamera::open(const AravisConfig& config, AravisSys& sys,
+                                                         std::string& problem) {
+  auto device = connect(config, sys, problem);
   if (!device.ok()) {
     return device.error();
   }
-  auto session = std::make_unique<Session>(config, std::move(device.value()));
+  auto session = std::make_unique<Session>(config, sys, std::move(device.value()));
   if (const auto ready = session->prepare(problem); !ready.ok()) {
     return ready.error();
   }

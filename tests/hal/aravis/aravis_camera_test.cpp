@@ -1,49 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dseam/hal/aravis/aravis_camera.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 #include <thread>
 
-#include "hal/aravis/fake_gige_camera.hpp"
+#include "hal/aravis/aravis_camera_fixture.hpp"
 
 namespace dseam::hal::aravis {
 namespace {
-
-using namespace std::chrono_literals;
-using test::FakeGigeCamera;
-using test::FakeScan3d;
-
-class AravisCameraTest : public ::testing::Test {
- protected:
-  AravisCameraTest() {
-    config_.id = FakeGigeCamera::serial();
-    config_.pixel_format = "Depth";
-    config_.packet_bytes = 8192;
-  }
-  std::unique_ptr<AravisCamera> open() {
-    auto camera = AravisCamera::open(config_, problem_);
-    EXPECT_TRUE(camera.ok()) << problem_;
-    return camera.ok() ? std::move(camera.value()) : nullptr;
-  }
-  Errc refusal() {
-    const auto camera = AravisCamera::open(config_, problem_);
-    EXPECT_FALSE(camera.ok());
-    return camera.ok() ? Errc::kIo : camera.error();
-  }
-  static bool wait_for_frame(DepthCamera& camera) {
-    bool came = false;
-    for (int i = 0; i < 200 && !came; ++i) {
-      came = camera.next(50ms).ok();
-    }
-    return came;
-  }
-
-  AravisConfig config_;
-  std::string problem_;
-};
 
 TEST_F(AravisCameraTest, the_model_is_read_axis_by_axis_from_the_device) {
   const FakeGigeCamera device;
@@ -73,6 +38,12 @@ TEST_F(AravisCameraTest, a_calibrated_float_cloud_in_metres_is_understood) {
   EXPECT_EQ(camera->model().format, depth::SampleFormat::kABC32f);
   EXPECT_EQ(camera->model().geometry, depth::Geometry::kCalibrated);
   EXPECT_DOUBLE_EQ(camera->model().mm_per_unit, 1000.0);
+}
+
+TEST_F(AravisCameraTest, a_number_that_is_described_as_an_integer_is_read_too) {
+  const FakeGigeCamera device({.whole_focal_length = true});
+
+  EXPECT_DOUBLE_EQ(open()->model().intrinsics.fx, 512.0);
 }
 
 TEST_F(AravisCameraTest, every_byte_arrives_in_the_camera_s_own_buffers) {
@@ -174,61 +145,6 @@ TEST_F(AravisCameraTest, a_frame_of_another_size_mid_stream_is_damaged) {
   }
 
   EXPECT_GT(camera->health().damaged, 0U);
-}
-
-TEST_F(AravisCameraTest, after_a_reconnect_the_settings_are_applied_again) {
-  FakeGigeCamera device;
-  config_.frame_rate_hz = 40.0;
-  const auto camera = open();
-  ASSERT_TRUE(camera->start(FrameMode::kEvery).ok());
-  ASSERT_TRUE(wait_for_frame(*camera));
-
-  device.unplug();
-  for (int i = 0; i < 500 && camera->state() != AravisState::kLost; ++i) {
-    std::this_thread::sleep_for(10ms);
-  }
-  EXPECT_EQ(camera->state(), AravisState::kLost);
-  device.plug_in();  // With another frame rate and, as the control program left it, Mono8.
-  device.write_register(ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT, ARV_PIXEL_FORMAT_MONO_8);
-
-  ASSERT_TRUE(wait_for_frame(*camera));
-  EXPECT_EQ(camera->health().reconnects, 1U);
-  EXPECT_EQ(camera->state(), AravisState::kStreaming);
-}
-
-TEST_F(AravisCameraTest, stop_returns_at_once_also_in_the_middle_of_a_reconnection) {
-  FakeGigeCamera device;
-  const auto camera = open();
-  ASSERT_TRUE(camera->start(FrameMode::kEvery).ok());
-  ASSERT_TRUE(wait_for_frame(*camera));
-  device.unplug();
-  while (camera->state() != AravisState::kLost) {
-    std::this_thread::sleep_for(10ms);
-  }
-  // From here on the control thread is in Aravis' discovery nearly all the time, a second each.
-  for (int i = 0; i < 12; ++i) {
-    std::this_thread::sleep_for(237ms);
-    const auto begin = std::chrono::steady_clock::now();
-    camera->stop();
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, 100ms);
-    EXPECT_EQ(camera->next(0ms).error(), Errc::kUnavailable);
-  }
-}
-
-TEST_F(AravisCameraTest, stop_returns_at_once_also_while_the_device_is_gone) {
-  FakeGigeCamera device;
-  const auto camera = open();
-  ASSERT_TRUE(camera->start(FrameMode::kEvery).ok());
-  ASSERT_TRUE(wait_for_frame(*camera));
-  device.unplug();
-
-  for (const auto gone_for : {0ms, 700ms}) {
-    std::this_thread::sleep_for(gone_for);
-    const auto begin = std::chrono::steady_clock::now();
-    camera->stop();
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, 100ms);
-    (void)camera->start(FrameMode::kEvery);
-  }
 }
 
 TEST_F(AravisCameraTest, the_socket_buffer_is_read_back_and_too_small_a_one_is_noted) {

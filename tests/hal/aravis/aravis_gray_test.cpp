@@ -4,7 +4,7 @@
 
 #include "dseam/hal/aravis/aravis_camera.hpp"
 #include "dseam/hal/camera/paired_camera.hpp"
-#include "hal/aravis/fake_gige_camera.hpp"
+#include "hal/aravis/fake/fake_gige_camera.hpp"
 
 namespace dseam::hal::aravis {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "dseam/hal/aravis/aravis_camera.hpp"
 #include "dseam/hal/camera/slot_pool.hpp"
-#include "hal/aravis/fake_gige_camera.hpp"
+#include "hal/aravis/fake/fake_gige_camera.hpp"
 #include "support/allocation_counter.hpp"
 
 namespace dseam::hal::aravis {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "dseam/hal/aravis/aravis_sys.hpp"
 #include "dseam/hal/camera/camera_info.hpp"
 #include "dseam/hal/depth_camera.hpp"
 
@@ -20,6 +21,8 @@ struct AravisConfig {
   std::string pixel_format;
   /// A camera of gray images, Mono8, to be joined to another's depth by PairedCamera.
   bool gray = false;
+  /// Ask the camera for its own gray image too, in one frame with its depth (multipart).
+  bool gray_beside_depth = false;
   double frame_rate_hz = 0.0;
   std::uint32_t num_buffers = 8;
   std::uint32_t packet_bytes = 0;  ///< 0: as large as the path carries, found at open.
@@ -28,6 +31,7 @@ struct AravisConfig {
   double stalled_periods = 3.0;  ///< Without a frame: kStalled.
   double lost_periods = 10.0;    ///< Without a frame, and at least 500 ms: reconnect.
   std::chrono::milliseconds first_frame{1000};  ///< Then packets of 1400 bytes are tried.
+  std::chrono::milliseconds first_retry{200};   ///< Of a reconnection; doubled up to 5 s.
   /// Used when the device itself describes no 3D data; width, height and format are the device's.
   std::optional<depth::DepthModel> assumed_model;
 };
@@ -48,8 +52,8 @@ enum class AravisState : std::uint8_t { kIdle, kStreaming, kStalled, kLost };
 ///
 /// Memory:  one mapping with `num_buffers` frames, filled by Aravis in place. Aravis' receiving
 ///          thread allocates about 3 kB a frame; the caller's thread nothing.
-/// Time:    stop() returns at once; the destructor may take the 6 s that Aravis needs to find
-///          out that a device is gone.
+/// Time:    stop() returns at once; the destructor may take the 10 s that Aravis needs to find out
+///          that a device is gone: four accesses to its registers, 2.5 s each.
 class AravisCamera final : public DepthCamera {
  public:
   /// Opens a camera. On failure `problem` says why, and what to do about it.
@@ -57,6 +61,9 @@ class AravisCamera final : public DepthCamera {
   /// Errors:  kNotFound, kUnavailable (in use), kUnsupported (no depth format, or no 3D
   ///          description and no assumed model), kIo.
   static Result<std::unique_ptr<AravisCamera>> open(const AravisConfig& config,
+                                                    std::string& problem);
+  /// The same over another table of calls, which must outlive the camera.
+  static Result<std::unique_ptr<AravisCamera>> open(const AravisConfig& config, AravisSys& sys,
                                                     std::string& problem);
   ~AravisCamera();
 

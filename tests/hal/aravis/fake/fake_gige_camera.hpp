@@ -26,11 +26,15 @@ struct FakeScan3d {
   std::string output_mode = "ProjectedC";
   std::string distance_unit = "Millimeter";
   double focal_length_px = 512.0;
+  bool whole_focal_length = false;  ///< Described as an integer, which SFNC does not want.
   double scale_c = 0.05;
   double offset_c = 100.0;
   double scale_ab = 0.1;
   double offset_ab = -10.0;
   double frame_rate_hz = 50.0;
+  /// Range and Intensity are components of a multipart frame. Aravis' fake does not know such
+  /// frames and stays silent: a MultipartSender sends them.
+  bool multipart = false;
 };
 
 /// A real GigE Vision device on the loopback, made of Aravis' fake and a description of our own.
@@ -45,6 +49,9 @@ class FakeGigeCamera {
   void unplug();
   void plug_in();
   void write_register(std::uint32_t address, std::uint32_t value);
+  [[nodiscard]] ArvFakeCamera* fake() const { return arv_gv_fake_camera_get_fake_camera(camera_); }
+  /// What a multipart camera was told: 0 is Intensity, 1 is Range.
+  [[nodiscard]] std::uint32_t component_format(std::uint32_t component) const;
   [[nodiscard]] static const char* serial() { return "DSEAM3D"; }
 
  private:
@@ -53,6 +60,9 @@ class FakeGigeCamera {
   std::filesystem::path description_;
   ArvGvFakeCamera* camera_ = nullptr;
 };
+
+/// Gives one of Aravis' fakes the registers and the picture that such a camera has.
+void set_up(ArvFakeCamera* fake, const FakeScan3d& scan);
 
 /// The description that such a camera serves.
 [[nodiscard]] std::string genicam_description(const FakeScan3d& scan);

@@ -2,8 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "dseam/depth/sample_layout.hpp"
-#include "session.hpp"
+#include "session/session.hpp"
 
 // The consumer's side of a session: nothing here allocates or makes a control call.
 
@@ -30,9 +29,9 @@ std::uint32_t slot_of(ArvBuffer* buffer) noexcept {
 }
 
 /// How long ago the first packet came, by the wall clock; a clock that was set gives no age.
-std::int64_t age_ns(ArvBuffer* buffer) noexcept {
+std::int64_t age_ns(const AravisSys::Arrival& arrival) noexcept {
   constexpr std::int64_t kOldestNs = 5'000'000'000;
-  const auto arrived = static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer));
+  const auto arrived = static_cast<std::int64_t>(arrival.system_ns);
   const std::int64_t age = wall_ns() - arrived;
   return arrived > 0 && age > 0 && age < kOldestNs ? age : 0;
 }
@@ -49,84 +48,80 @@ Result<DepthFrame> AravisCamera::Session::next(std::chrono::nanoseconds timeout,
     if (loss_unreported_.exchange(false)) {
       return Errc::kDisconnected;
     }
-    ArvBuffer* buffer = pop(deadline);
-    if (buffer == nullptr) {
+    const Popped popped = pop(deadline);
+    if (popped.buffer == nullptr) {
       continue;
     }
-    count_gap(arv_buffer_get_frame_id(buffer));
-    if (!is_whole(buffer)) {
+    count_gap(popped.arrival.frame_id);
+    if (!popped.images.has_value()) {
       ++counters_.damaged;
       ++missing_;
-      drop(buffer);
+      drop(popped.buffer);
       continue;
     }
-    slot = slot_of(buffer);
+    slot = slot_of(popped.buffer);
     ++counters_.delivered;
-    return frame_of(buffer);
+    return frame_of(popped);
   } while (Clock::now() < deadline);
   const bool lost = state_ == AravisState::kLost;
   return !running_ ? Errc::kUnavailable : lost ? Errc::kDisconnected : Errc::kTimeout;
 }
 
-ArvBuffer* AravisCamera::Session::pop(Clock::time_point deadline) noexcept {
+AravisCamera::Session::Popped AravisCamera::Session::pop(Clock::time_point deadline) noexcept {
   constexpr std::chrono::nanoseconds kSlice = 10ms;
   const auto left = std::clamp(std::chrono::nanoseconds(deadline - Clock::now()), 0ns, kSlice);
   std::unique_lock lock(stream_mutex_);
   if (handing_over_ || stream_ == nullptr) {
     lock.unlock();
     std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(left, 1ms));
-    return nullptr;
+    return {};
   }
-  ArvBuffer* buffer =
-      left > 0ns ? arv_stream_timeout_pop_buffer(stream_, static_cast<guint64>(left.count() / 1000))
-                 : arv_stream_try_pop_buffer(stream_);
+  ArvBuffer* buffer = sys_.pop(stream_, static_cast<std::uint64_t>(left.count() / 1000));
   if (buffer == nullptr) {
-    return nullptr;
+    return {};
   }
-  popped_[slot_of(buffer)] = buffer;
-  return mode_ == FrameMode::kLatest ? newest(buffer) : buffer;
+  const Popped popped = examine(buffer);
+  return mode_ == FrameMode::kLatest ? newest(popped) : popped;
 }
 
 /// Under stream_mutex_. Overtaken frames go back; a damaged newer one does not hide a good one.
-ArvBuffer* AravisCamera::Session::newest(ArvBuffer* oldest) noexcept {
-  ArvBuffer* best = oldest;
+AravisCamera::Session::Popped AravisCamera::Session::newest(Popped oldest) noexcept {
+  Popped best = oldest;
   for (std::uint32_t i = 0; i < SlotPool::kMaxSlots; ++i) {
-    ArvBuffer* newer = arv_stream_try_pop_buffer(stream_);
-    if (newer == nullptr) {
+    ArvBuffer* buffer = sys_.pop(stream_, 0);
+    if (buffer == nullptr) {
       break;
     }
-    popped_[slot_of(newer)] = newer;
-    const bool replace = is_whole(newer) || !is_whole(best);
-    ArvBuffer* overtaken = replace ? std::exchange(best, newer) : newer;
-    count_gap(arv_buffer_get_frame_id(overtaken));
-    ++(is_whole(overtaken) ? counters_.skipped : counters_.damaged);
-    drop(overtaken);
+    const Popped newer = examine(buffer);
+    const bool replace = newer.images.has_value() || !best.images.has_value();
+    const Popped overtaken = replace ? std::exchange(best, newer) : newer;
+    count_gap(overtaken.arrival.frame_id);
+    ++(overtaken.images.has_value() ? counters_.skipped : counters_.damaged);
+    drop(overtaken.buffer);
   }
   return best;
 }
 
-bool AravisCamera::Session::is_whole(ArvBuffer* buffer) const noexcept {
-  if (arv_buffer_get_status(buffer) != ARV_BUFFER_STATUS_SUCCESS) {
-    return false;
+/// Takes the buffer from the stream's hands, and looks at what is in it.
+AravisCamera::Session::Popped AravisCamera::Session::examine(ArvBuffer* buffer) noexcept {
+  constexpr std::size_t kMostParts = 16;
+  popped_[slot_of(buffer)] = buffer;
+  Popped popped{buffer, sys_.arrival(buffer), std::nullopt};
+  if (popped.arrival.status == ARV_BUFFER_STATUS_SUCCESS) {
+    std::array<AravisSys::Part, kMostParts> parts;
+    const std::size_t count = sys_.parts(buffer, parts);
+    popped.images = pick_images(std::span(parts).first(count), wanted_);
   }
-  std::size_t size = 0;
-  (void)arv_buffer_get_data(buffer, &size);
-  const ArvPixelFormat code = arv_buffer_get_image_pixel_format(buffer);
-  const auto format = depth::format_from_pfnc(code);
-  const bool as_agreed = config_.gray ? code == ARV_PIXEL_FORMAT_MONO_8
-                                      : format.ok() && format.value() == model_.format;
-  // Aravis' own fake reports no size at all.
-  return (size == 0 || size >= image_bytes_) && as_agreed &&
-         std::cmp_equal(arv_buffer_get_image_width(buffer), model_.intrinsics.width) &&
-         std::cmp_equal(arv_buffer_get_image_height(buffer), model_.intrinsics.height);
+  return popped;
 }
 
-DepthFrame AravisCamera::Session::frame_of(ArvBuffer* buffer) noexcept {
+DepthFrame AravisCamera::Session::frame_of(const Popped& popped) noexcept {
   DepthFrame frame;
-  (config_.gray ? frame.gray : frame.depth) = {pool_.slot(slot_of(buffer)), pool_.payload_bytes()};
-  frame.device_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
+  frame.depth = popped.images->depth;
+  frame.gray = popped.images->gray;
+  frame.device_ns = static_cast<std::int64_t>(popped.arrival.device_ns);
   frame.dequeued_ns = monotonic_ns();
-  frame.captured_ns = std::max(last_captured_ns_, frame.dequeued_ns - age_ns(buffer));
+  frame.captured_ns = std::max(last_captured_ns_, frame.dequeued_ns - age_ns(popped.arrival));
   last_captured_ns_ = frame.captured_ns;
   frame.sequence = sequence_.current();
   frame.gap = std::exchange(missing_, 0U);

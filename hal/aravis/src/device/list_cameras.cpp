@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <vector>
 
-#include "device.hpp"
+#include "device/device.hpp"
 
 namespace dseam::hal::aravis {
 namespace {
@@ -24,7 +24,7 @@ std::vector<CameraInfo> list_cameras() {
   for (CameraInfo& camera : cameras) {
     AravisConfig config;
     config.id = camera.id;
-    (void)connect(config, camera.why_not);
+    (void)connect(config, aravis_library(), camera.why_not);
   }
   return cameras;
 }

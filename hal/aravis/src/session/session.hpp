@@ -5,15 +5,18 @@
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
-#include "device.hpp"
+#include "device/device.hpp"
 #include "dseam/base/random.hpp"
 #include "dseam/hal/aravis/aravis_camera.hpp"
 #include "dseam/hal/camera/camera_counters.hpp"
 #include "dseam/hal/camera/frame_sequence.hpp"
 #include "dseam/hal/camera/slot_pool.hpp"
+#include "session/frame_images.hpp"
+#include "session/frame_pool.hpp"
 
 namespace dseam::hal::aravis {
 
@@ -24,7 +27,7 @@ namespace dseam::hal::aravis {
 /// back are only marked; the control thread hands them to Aravis.
 class AravisCamera::Session {
  public:
-  Session(const AravisConfig& config, Device device);
+  Session(const AravisConfig& config, AravisSys& sys, Device device);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -37,7 +40,7 @@ class AravisCamera::Session {
   Result<DepthFrame> next(std::chrono::nanoseconds timeout, std::uint32_t& slot) noexcept;
   void give_back(std::uint32_t slot) noexcept;
 
-  [[nodiscard]] const depth::DepthModel& model() const noexcept { return model_; }
+  [[nodiscard]] const depth::DepthModel& model() const noexcept { return wanted_.model; }
   [[nodiscard]] CameraHealth health() const noexcept { return counters_.snapshot(); }
   [[nodiscard]] AravisState state() const noexcept { return state_; }
   [[nodiscard]] AravisGrant grant() const;
@@ -46,10 +49,16 @@ class AravisCamera::Session {
   using Clock = std::chrono::steady_clock;
 
   // The consumer's side.
-  ArvBuffer* pop(Clock::time_point deadline) noexcept;
-  ArvBuffer* newest(ArvBuffer* oldest) noexcept;
-  [[nodiscard]] bool is_whole(ArvBuffer* buffer) const noexcept;
-  DepthFrame frame_of(ArvBuffer* buffer) noexcept;
+  /// One frame as it was popped, with its images when it is whole.
+  struct Popped {
+    ArvBuffer* buffer = nullptr;
+    AravisSys::Arrival arrival;
+    std::optional<FrameImages> images;
+  };
+  Popped pop(Clock::time_point deadline) noexcept;
+  Popped newest(Popped oldest) noexcept;
+  Popped examine(ArvBuffer* buffer) noexcept;
+  DepthFrame frame_of(const Popped& popped) noexcept;
   void drop(ArvBuffer* buffer) noexcept;
   void count_gap(std::uint64_t frame_id) noexcept;
 
@@ -57,11 +66,14 @@ class AravisCamera::Session {
   void run();
   void control_step();
   void begin_acquisition(std::uint32_t request);
+  void answer_start(std::uint32_t request, const Result<>& result);
+  [[nodiscard]] std::uint32_t latest_request() const;
   void end_acquisition();
   void feed();
   void watch();
   void judge_silence(double silent_periods);
-  [[nodiscard]] std::uint64_t frames_seen() const;
+  [[nodiscard]] std::uint64_t count(const char* counter);
+  [[nodiscard]] std::uint64_t frames_seen();
   void disconnect();
   bool reconnect_once();
   void keep_reconnecting();
@@ -71,8 +83,8 @@ class AravisCamera::Session {
 
   const AravisConfig config_;
   AravisConfig active_;  ///< With what was learned, such as a smaller packet.
-  depth::DepthModel model_;
-  std::size_t image_bytes_;
+  AravisSys& sys_;
+  WantedImages wanted_;
   Device device_;
   FramePool pool_;
   CameraCounters counters_;

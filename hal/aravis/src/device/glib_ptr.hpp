@@ -29,6 +29,10 @@ class GlibError {
   }
   explicit operator bool() const noexcept { return error_ != nullptr; }
   [[nodiscard]] std::string text() const { return error_ == nullptr ? "" : error_->message; }
+  /// The device's own or that of the way to it, not one of its description.
+  [[nodiscard]] bool is_of_device() const noexcept {
+    return error_ != nullptr && error_->domain == ARV_DEVICE_ERROR;
+  }
   [[nodiscard]] bool is(ArvDeviceError code) const noexcept {
     return error_ != nullptr && g_error_matches(error_, ARV_DEVICE_ERROR, code);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/aravis/fake_gige_camera.hpp"
+#include "hal/aravis/fake/fake_gige_camera.hpp"
 
 #include <dlfcn.h>
 #include <net/if.h>
@@ -39,6 +39,11 @@ namespace {
 
 constexpr std::uint32_t kScaleAddress = 0x1000;   // A, B, C, as 64-bit floats
 constexpr std::uint32_t kOffsetAddress = 0x1020;  // the same
+constexpr std::uint32_t kSilentAddress = 0x1100;  // Acquisition of which the fake knows nothing.
+constexpr std::uint32_t kComponentAddress = 0x1104;
+constexpr std::uint32_t kEnableAddress = 0x1108;       // Of two components,
+constexpr std::uint32_t kPixelFormatAddress = 0x1110;  // and the formats of both.
+constexpr std::uint32_t kCapabilityAddress = 0x0d20;   // GigE Vision: stream channel capability.
 
 void fill_pattern(ArvBuffer* buffer, void* /*data*/, guint32 /*exposure_us*/, guint32 /*gain*/,
                   ArvPixelFormat format) {
@@ -109,6 +114,24 @@ std::string axis_node(const std::string& name, unsigned address) {
          "<Endianess>BigEndian</Endianess></FloatReg>\n";
 }
 
+/// A register for each component, behind the selector.
+std::string component_node(const std::string& name, unsigned address) {
+  return "<IntReg Name='" + name + "'><Address>" + std::to_string(address) +
+         "</Address><pIndex Offset='4'>ComponentIndex</pIndex><Length>4</Length>"
+         "<AccessMode>RW</AccessMode><pPort>Device</pPort><Sign>Unsigned</Sign>"
+         "<Endianess>BigEndian</Endianess></IntReg>\n";
+}
+
+std::string component_nodes() {
+  return register_node("ComponentIndex", kComponentAddress) +
+         "<Enumeration Name='ComponentSelector'>"
+         "<EnumEntry Name='Intensity'><Value>0</Value></EnumEntry>"
+         "<EnumEntry Name='Range'><Value>1</Value></EnumEntry>"
+         "<pValue>ComponentIndex</pValue></Enumeration>\n"
+         "<Boolean Name='ComponentEnable'><pValue>ComponentEnableRegister</pValue></Boolean>\n" +
+         component_node("ComponentEnableRegister", kEnableAddress);
+}
+
 std::string scan3d_nodes(const FakeScan3d& scan) {
   return "<Integer Name='AxisIndex'><Value>0</Value></Integer>\n"
          "<Enumeration Name='Scan3dCoordinateSelector'>"
@@ -122,7 +145,10 @@ std::string scan3d_nodes(const FakeScan3d& scan) {
          choice_node("Scan3dDistanceUnit", scan.distance_unit, 1) +
          "<Boolean Name='Scan3dInvalidDataFlag'><Value>1</Value></Boolean>\n" +
          constant_node("Scan3dInvalidDataValue", 0.0) +
-         constant_node("Scan3dFocalLength", scan.focal_length_px) +
+         (scan.whole_focal_length
+              ? "<Integer Name='Scan3dFocalLength'><Value>" +
+                    std::to_string(static_cast<int>(scan.focal_length_px)) + "</Value></Integer>\n"
+              : constant_node("Scan3dFocalLength", scan.focal_length_px)) +
          constant_node("Scan3dPrincipalPointU", 0.5 * scan.width - 0.5) +
          constant_node("Scan3dPrincipalPointV", 0.5 * scan.height - 0.5);
 }
@@ -137,7 +163,8 @@ void enter_private_network() {
 }
 
 std::string genicam_description(const FakeScan3d& scan) {
-  const std::uint32_t pixel_bytes = ((scan.pixel_format >> 16U) & 0xFFU) / 8U;
+  const std::uint32_t depth_bytes = ((scan.pixel_format >> 16U) & 0xFFU) / 8U;
+  const std::uint32_t pixel_bytes = depth_bytes + (scan.multipart ? 2U : 0U);  // Gray, confidence.
   return "<?xml version='1.0' encoding='utf-8'?>\n"
          "<RegisterDescription ModelName='Fake3D' VendorName='dseam' StandardNameSpace='None' "
          "SchemaMajorVersion='1' SchemaMinorVersion='1' SchemaSubMinorVersion='0' "
@@ -151,12 +178,15 @@ std::string genicam_description(const FakeScan3d& scan) {
          register_node("SensorHeight", ARV_FAKE_CAMERA_REGISTER_SENSOR_HEIGHT, "RO") +
          register_node("OffsetX", ARV_FAKE_CAMERA_REGISTER_X_OFFSET) +
          register_node("OffsetY", ARV_FAKE_CAMERA_REGISTER_Y_OFFSET) +
-         register_node("PixelFormatRegister", ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT) +
+         (scan.multipart
+              ? component_nodes() + component_node("PixelFormatRegister", kPixelFormatAddress)
+              : register_node("PixelFormatRegister", ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT)) +
          "<Enumeration Name='PixelFormat'><EnumEntry Name='Mono8'><Value>17301505</Value>"
          "</EnumEntry><EnumEntry Name='Depth'><Value>" +
          std::to_string(scan.pixel_format) +
          "</Value></EnumEntry><pValue>PixelFormatRegister</pValue></Enumeration>\n" +
-         register_node("AcquisitionRegister", ARV_FAKE_CAMERA_REGISTER_ACQUISITION) +
+         register_node("AcquisitionRegister",
+                       scan.multipart ? kSilentAddress : ARV_FAKE_CAMERA_REGISTER_ACQUISITION) +
          command_node("AcquisitionStart", 1) + command_node("AcquisitionStop", 0) +
          register_node("FramePeriod", ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US) +
          "<Float Name='AcquisitionFrameRate'><pValue>FrameRate</pValue><Min>0.1</Min>"
@@ -188,16 +218,20 @@ void FakeGigeCamera::unplug() { g_clear_object(&camera_); }
 void FakeGigeCamera::plug_in() {
   camera_ = arv_gv_fake_camera_new_full("127.0.0.1", serial(), description_.c_str());
   g_object_set(camera_, "gvsp-lost-ratio", lost_packet_ratio_, nullptr);
-  ArvFakeCamera* fake = arv_gv_fake_camera_get_fake_camera(camera_);
+  set_up(arv_gv_fake_camera_get_fake_camera(camera_), scan_);
+}
+
+void set_up(ArvFakeCamera* fake, const FakeScan3d& scan) {
   arv_fake_camera_set_fill_pattern(fake, fill_pattern, nullptr);
-  write_register(ARV_FAKE_CAMERA_REGISTER_WIDTH, scan_.width);
-  write_register(ARV_FAKE_CAMERA_REGISTER_HEIGHT, scan_.height);
-  write_register(ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT, scan_.pixel_format);
-  write_register(ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US,
-                 static_cast<std::uint32_t>(1e6 / scan_.frame_rate_hz));
+  arv_fake_camera_write_register(fake, ARV_FAKE_CAMERA_REGISTER_WIDTH, scan.width);
+  arv_fake_camera_write_register(fake, ARV_FAKE_CAMERA_REGISTER_HEIGHT, scan.height);
+  arv_fake_camera_write_register(fake, ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT, scan.pixel_format);
+  arv_fake_camera_write_register(fake, ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US,
+                                 static_cast<std::uint32_t>(1e6 / scan.frame_rate_hz));
+  arv_fake_camera_write_register(fake, kCapabilityAddress, UINT32_MAX);
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
-    const double scale = axis == 2 ? scan_.scale_c : scan_.scale_ab;
-    const double offset = axis == 2 ? scan_.offset_c : scan_.offset_ab;
+    const double scale = axis == 2 ? scan.scale_c : scan.scale_ab;
+    const double offset = axis == 2 ? scan.offset_c : scan.offset_ab;
     const std::uint64_t be_scale = GUINT64_TO_BE(std::bit_cast<std::uint64_t>(scale));
     const std::uint64_t be_offset = GUINT64_TO_BE(std::bit_cast<std::uint64_t>(offset));
     arv_fake_camera_write_memory(fake, kScaleAddress + 8 * axis, 8, &be_scale);
@@ -207,6 +241,12 @@ void FakeGigeCamera::plug_in() {
 
 void FakeGigeCamera::write_register(std::uint32_t address, std::uint32_t value) {
   arv_fake_camera_write_register(arv_gv_fake_camera_get_fake_camera(camera_), address, value);
+}
+
+std::uint32_t FakeGigeCamera::component_format(std::uint32_t component) const {
+  std::uint32_t format = 0;
+  arv_fake_camera_read_register(fake(), kPixelFormatAddress + 4 * component, &format);
+  return format;
 }
 
 }  // namespace dseam::test

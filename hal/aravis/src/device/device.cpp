@@ -1,25 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "device.hpp"
+#include "device/device.hpp"
 
-#include <gio/gio.h>
 #include <netinet/in.h>
-#include <sys/mman.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <filesystem>
 
+#include "device/scan3d.hpp"
 #include "dseam/depth/sample_layout.hpp"
-#include "scan3d.hpp"
 
 namespace dseam::hal::aravis {
 namespace {
-
-bool on_loopback(ArvGvDevice* device) {
-  GSocketAddress* address = arv_gv_device_get_interface_address(device);  // Still the device's.
-  return g_inet_address_get_is_loopback(
-             g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(address))) != FALSE;
-}
 
 std::string seen_cameras() {
   std::string seen;
@@ -40,19 +32,20 @@ std::string device_id_of(const std::string& named) {
   return named;
 }
 
-Result<> apply_settings(ArvCamera* camera, const AravisConfig& config, std::string& problem) {
+Result<> apply_settings(ArvCamera* camera, const AravisConfig& config, AravisSys& sys,
+                        std::string& problem) {
   GlibError error;
   const std::string format =
       config.gray && config.pixel_format.empty() ? "Mono8" : config.pixel_format;
   if (!format.empty()) {
-    arv_camera_set_pixel_format_from_string(camera, format.c_str(), error.out());
+    sys.set_text(camera, "PixelFormat", format.c_str(), error.out());
     if (error) {
       problem = "it has no pixel format " + format + " (" + error.text() + ")";
       return Errc::kUnsupported;
     }
   }
   if (config.frame_rate_hz > 0.0) {
-    arv_camera_set_frame_rate(camera, config.frame_rate_hz, error.out());
+    sys.set_frame_rate_hz(camera, config.frame_rate_hz, error.out());
     if (error) {
       problem = "it refused the frame rate: " + error.text();
       return Errc::kUnsupported;
@@ -61,28 +54,53 @@ Result<> apply_settings(ArvCamera* camera, const AravisConfig& config, std::stri
   return {};
 }
 
-/// As root, Aravis chooses a packet socket by itself, and that receives nothing on the loopback.
-void choose_socket_kind(Device& device) {
-  if (on_loopback(ARV_GV_DEVICE(arv_camera_get_device(device.camera.get())))) {
-    arv_camera_gv_set_stream_options(device.camera.get(),
-                                     ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
+/// Selects a component of what the camera sees, and has it sent.
+bool send_component(ArvCamera* camera, const char* component, AravisSys& sys, GlibError& error) {
+  sys.set_text(camera, "ComponentSelector", component, error.out());
+  if (!error) {
+    sys.set_flag(camera, "ComponentEnable", true, error.out());
   }
+  return !error;
 }
 
-void choose_packet_size(Device& device, const AravisConfig& config) {
-  constexpr guint kSmallest = 576;
-  constexpr gint kSafe = 1400;
+/// Depth and gray in one frame. The selector stays on the depth, so that what is set and read
+/// afterwards is the depth's.
+///
+/// Source:  GenICam SFNC 2.7, ComponentSelector; GigE Vision 2.0, multipart payload.
+Result<> ask_for_both_images(Device& device, AravisSys& sys, std::string& problem) {
   ArvCamera* camera = device.camera.get();
   GlibError error;
-  if (config.packet_bytes != 0) {
-    arv_camera_gv_set_packet_size(camera, static_cast<gint>(config.packet_bytes), error.out());
-  } else if (arv_camera_gv_auto_packet_size(camera, error.out()) < kSmallest || error) {
-    arv_camera_gv_set_packet_size(camera, kSafe, error.out());
+  bool both = send_component(camera, "Intensity", sys, error);
+  if (both) {
+    sys.set_text(camera, "PixelFormat", "Mono8", error.out());
+    both = !error;
   }
-  device.grant.packet_bytes = arv_camera_gv_get_packet_size(camera, error.out());
+  both = both && (send_component(camera, "Range", sys, error) ||
+                  send_component(camera, "Disparity", sys, error));
+  if (both && device.is_gige) {
+    sys.set_multipart(camera, error.out());
+  }
+  if (error) {
+    problem = "it does not send a gray image beside its depth (" + error.text() +
+              "); name a second camera in camera.gray_device, or do without";
+    return Errc::kUnsupported;
+  }
+  return {};
+}
+
+void choose_packet_size(Device& device, const AravisConfig& config, AravisSys& sys) {
+  constexpr std::uint32_t kSmallest = 576;
+  constexpr std::uint32_t kSafe = 1400;
+  ArvCamera* camera = device.camera.get();
+  GlibError error;
+  std::uint32_t granted = sys.set_packet_bytes(camera, config.packet_bytes, error.out());
+  if (error || granted < kSmallest) {
+    granted = sys.set_packet_bytes(camera, kSafe, error.out());
+  }
+  device.grant.packet_bytes = granted;
   constexpr std::uint32_t kJumbo = 8000;
-  if (device.grant.packet_bytes < kJumbo) {
-    device.grant.notes.push_back("packets of " + std::to_string(device.grant.packet_bytes) +
+  if (granted < kJumbo) {
+    device.grant.notes.push_back("packets of " + std::to_string(granted) +
                                  " bytes: set the network card's MTU to 9000 "
                                  "(ip link set IFACE mtu 9000)");
   }
@@ -111,59 +129,25 @@ std::size_t wanted_socket_buffer(const Device& device, const AravisConfig& confi
   return std::clamp(3 * device.payload_bytes, config.socket_buffer_bytes, std::size_t{1} << 30U);
 }
 
-void on_stream_event(void* user_data, ArvStreamCallbackType type, ArvBuffer* /*buffer*/) {
-  const int priority = GPOINTER_TO_INT(user_data);
-  if (type == ARV_STREAM_CALLBACK_TYPE_INIT && priority > 0) {
-    arv_make_thread_realtime(priority);
-  }
-}
-
-/// Retention: a busy computer may hold a frame's packets back for several periods.
-void set_gige_stream(ArvStream* stream, std::size_t socket_buffer) {
-  g_object_set(stream, "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size",
-               static_cast<gint>(socket_buffer), "packet-resend",
-               ARV_GV_STREAM_PACKET_RESEND_ALWAYS, "initial-packet-timeout", 2000U,
-               "packet-timeout", 20'000U, "frame-retention", 100'000U, nullptr);
-}
-
-}  // namespace
-
-FramePool::~FramePool() {
-  if (memory_ != nullptr) {
-    munmap(memory_, slot_bytes_ * slots_);
-  }
-}
-
-Result<> FramePool::map(std::uint32_t slots, std::size_t payload_bytes) {
-  constexpr std::size_t kPage = 4096;
-  slots_ = slots;
-  payload_bytes_ = payload_bytes;
-  slot_bytes_ = (payload_bytes + kPage - 1) / kPage * kPage;
-  void* memory = mmap(nullptr, slot_bytes_ * slots_, PROT_READ | PROT_WRITE,
-                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_POPULATE, -1, 0);
-  if (memory == MAP_FAILED) {
-    return Errc::kOutOfMemory;
-  }
-  memory_ = static_cast<std::byte*>(memory);
-  return {};
-}
-
 /// Reads what the camera says of its images, and whether that can be.
-Result<> describe(Device& device, const AravisConfig& config, std::string& problem) {
+Result<> describe(Device& device, const AravisConfig& config, AravisSys& sys,
+                  std::string& problem) {
   ArvCamera* camera = device.camera.get();
-  auto model = config.gray ? read_gray_model(camera, problem)
-                           : read_depth_model(camera, config.assumed_model, problem);
+  auto model = config.gray ? read_gray_model(camera, sys, problem)
+                           : read_depth_model(camera, sys, config.assumed_model, problem);
   if (!model.ok()) {
     return model.error();
   }
   GlibError error;
   device.model = model.value();
-  device.image_bytes =
-      config.gray ? depth::gray_bytes(device.model) : depth::depth_bytes(device.model);
-  device.payload_bytes = arv_camera_get_payload(camera, error.out());
-  const double rate_hz = arv_camera_get_frame_rate(camera, error.out());
+  device.model.has_gray = config.gray || config.gray_beside_depth;
+  device.payload_bytes = static_cast<std::size_t>(
+      std::max<std::int64_t>(0, sys.integer(camera, "PayloadSize", error.out())));
+  const double rate_hz = sys.frame_rate_hz(camera, error.out());
   device.period_s = rate_hz > 0.01 ? 1.0 / rate_hz : device.period_s;
-  if (device.payload_bytes < device.image_bytes) {
+  const std::size_t image_bytes =
+      (config.gray ? 0 : depth::depth_bytes(device.model)) + depth::gray_bytes(device.model);
+  if (device.payload_bytes < image_bytes) {
     problem = "its payload of " + std::to_string(device.payload_bytes) +
               " bytes cannot hold the image it describes";
     return Errc::kBadData;
@@ -171,14 +155,16 @@ Result<> describe(Device& device, const AravisConfig& config, std::string& probl
   return {};
 }
 
-Result<Device> connect(const AravisConfig& config, std::string& problem) {
+}  // namespace
+
+Result<Device> connect(const AravisConfig& config, AravisSys& sys, std::string& problem) {
   if (config.id.starts_with("Fake")) {
     arv_enable_interface("Fake");
   }
-  arv_update_device_list();
+  sys.find_devices();
   Device device;
   GlibError error;
-  device.camera.reset(arv_camera_new(device_id_of(config.id).c_str(), error.out()));
+  device.camera.reset(sys.open(device_id_of(config.id).c_str(), error.out()));
   if (device.camera == nullptr) {
     problem = "there is no camera " + config.id + " (seen: " + seen_cameras() +
               "); check power, cable and the network card's address: " + error.text();
@@ -186,36 +172,39 @@ Result<Device> connect(const AravisConfig& config, std::string& problem) {
   }
   ArvCamera* camera = device.camera.get();
   device.is_gige = arv_camera_is_gv_device(camera) != FALSE;
-  if (device.is_gige &&
-      arv_gv_device_is_controller(ARV_GV_DEVICE(arv_camera_get_device(camera))) == FALSE) {
+  if (!sys.controls(camera)) {
     problem =
         "another program controls it; end that program (after a crash the camera frees "
         "itself within 3 s)";
     return Errc::kUnavailable;
   }
-  if (const auto applied = apply_settings(camera, config, problem); !applied.ok()) {
+  if (config.gray_beside_depth) {
+    if (const auto asked = ask_for_both_images(device, sys, problem); !asked.ok()) {
+      return asked.error();
+    }
+  }
+  if (const auto applied = apply_settings(camera, config, sys, problem); !applied.ok()) {
     return applied.error();
   }
-  if (const auto described = describe(device, config, problem); !described.ok()) {
+  if (const auto described = describe(device, config, sys, problem); !described.ok()) {
     return described.error();
   }
   return device;
 }
 
-Result<> make_stream(Device& device, const AravisConfig& config, std::string& problem) {
-  GlibError error;
+Result<> make_stream(Device& device, const AravisConfig& config, AravisSys& sys,
+                     std::string& problem) {
+  AravisSys::StreamSettings settings;
+  settings.receive_priority = config.receive_priority;
   if (device.is_gige) {
-    choose_socket_kind(device);
-    choose_packet_size(device, config);
+    choose_packet_size(device, config, sys);
+    settings.socket_buffer_bytes = wanted_socket_buffer(device, config);
   }
-  device.stream.reset(arv_camera_create_stream(
-      device.camera.get(), on_stream_event, GINT_TO_POINTER(config.receive_priority), error.out()));
+  GlibError error;
+  device.stream.reset(sys.make_stream(device.camera.get(), settings, error.out()));
   if (device.stream == nullptr) {
     problem = "it gave no stream: " + error.text();
     return error.is(ARV_DEVICE_ERROR_NOT_CONTROLLER) ? Errc::kUnavailable : Errc::kIo;
-  }
-  if (device.is_gige) {
-    set_gige_stream(device.stream.get(), wanted_socket_buffer(device, config));
   }
   return {};
 }
