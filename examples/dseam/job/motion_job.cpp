@@ -45,7 +45,7 @@ std::string MotionJob::why() const {
     return "the torch cannot follow this seam";
   }
   if (report_.path.state == Path::kNothingWeldable) {
-    return "no stretch of the seam may be welded (clearance, dihedral, tilt or confidence)";
+    return "no stretch of the seam may be welded (gap, clearance, dihedral, tilt or confidence)";
   }
   if (report_.path.state == Path::kStartTooFar) {
     return "the torch stands too far from the seam (path.max_start_mm)";
