@@ -47,7 +47,8 @@ class NormalEstimation::OfCell {
     const search::Cell& own = tree_.cells()[at];
     const geometry::LeastAxisLanes fit = geometry::least_axis(moments_.covariance());
     const FloatLanes width = splat(config_.min_width_ratio * config_.min_width_ratio);
-    const FloatLanes few = splat(static_cast<float>(std::max<std::uint32_t>(config_.min_neighbours, 3)));
+    const FloatLanes few =
+        splat(static_cast<float>(std::max<std::uint32_t>(config_.min_neighbours, 3)));
     const std::uint32_t too_few = lanes::bits(moments_.count() < few);
     const std::uint32_t flat = lanes::bits(fit.most * width < fit.middle);
     const std::uint32_t clear =

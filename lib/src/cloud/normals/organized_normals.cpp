@@ -163,7 +163,8 @@ OrganizedNormals::Eight OrganizedNormals::fit_eight(const depth::DepthImage& ima
   const FloatLanes off_plane = plane.rest * z * z / square;
   const FloatLanes across =
       z * z * (plane.spread_u * splat(1.0F / (fx * fx)) + plane.spread_v * splat(1.0F / (fy * fy)));
-  const FloatLanes few = splat(static_cast<float>(std::max<std::uint32_t>(config_.min_neighbours, 3)));
+  const FloatLanes few =
+      splat(static_cast<float>(std::max<std::uint32_t>(config_.min_neighbours, 3)));
   return {normal, off_plane / (off_plane + across), lanes::bits(sums.n < few),
           lanes::bits(plane.determinant <= splat(1.0e-3F))};
 }
