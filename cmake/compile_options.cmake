@@ -4,7 +4,8 @@
 add_library(dseam_options INTERFACE)
 target_compile_features(dseam_options INTERFACE cxx_std_20)
 target_compile_options(dseam_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wdouble-promotion
+  -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow
+  $<$<CXX_COMPILER_ID:GNU>:-Wdouble-promotion>  # Clang's also names what is written out: double{x}.
   -Wold-style-cast -Wnon-virtual-dtor -Wvla
   $<$<BOOL:${PROJECT_IS_TOP_LEVEL}>:-Werror>  # A user's newer compiler may warn of more.
   -ffp-contract=off)  # The same bits on every processor; docs/decisions/0006 says why.
