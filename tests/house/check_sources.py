@@ -16,7 +16,7 @@ SOURCES = (".cpp", ".hpp")
 SCRIPTS = (".sh", ".py")
 
 # What each part may include besides itself. Stages do not know each other: only `pipeline` names
-# two. `seam_curve.hpp`, `spliced_view.hpp` and `path_point.hpp` are the data that they share.
+# two. SHARED_DATA names the one header of another that a stage may know: the data they share.
 LAYERS = {
     "lib": {"lib"},
     "hal": {"lib", "hal"},
