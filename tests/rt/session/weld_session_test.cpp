@@ -18,15 +18,9 @@ using dseam::test::kMs;
 using dseam::test::VirtualCell;
 using dseam::test::weld_half;
 using dseam::test::weld_to_the_end;
+using dseam::test::with_vision;
 using E = dseam::rt::SessionEvent;
 using S = dseam::rt::SessionState;
-
-WeldSession::Config with_vision() {
-  WeldSession::Config config;
-  config.vision_limit_ns = 200 * kMs;
-  config.arc.max_standing_ns = 300 * kMs;
-  return config;
-}
 
 TEST(WeldSession, welds_the_whole_path_and_comes_back_to_idle) {
   VirtualCell cell(1);

@@ -13,6 +13,14 @@ inline bool weld_to_the_end(VirtualCell& cell) {
                         6000 * kMs);
 }
 
+/// Also the vision thread is watched, and a torch that stands.
+inline rt::WeldSession::Config with_vision() {
+  rt::WeldSession::Config config;
+  config.vision_limit_ns = 200 * kMs;
+  config.arc.max_standing_ns = 300 * kMs;
+  return config;
+}
+
 /// To the middle of the bead.
 inline bool weld_half(VirtualCell& cell) {
   return cell.bring_to(rt::SessionState::kRunning) &&
