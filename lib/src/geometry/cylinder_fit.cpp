@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dseam/geometry/robust.hpp"
 #include "dseam/geometry/symmetric_matrix.hpp"
 
 namespace dseam::geometry {
@@ -31,12 +32,6 @@ struct NormalEquations {
     return weight > 0.0 ? std::sqrt(squares / weight) : 0.0;
   }
 };
-
-double tukey_weight(double residual, double gate) noexcept {
-  const double s = residual / gate;
-  const double t = 1.0 - s * s;
-  return t > 0.0 ? t * t : 0.0;
-}
 
 Eigen::Vector3d centroid(const PointSpans& points) noexcept {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -67,7 +62,7 @@ void add_point(const Eigen::Vector3d& p, const CylinderFit& fit, double gate,
   const Eigen::Vector3d n = across / rho;
   Vector5 j;
   j << -n.dot(fit.e1), -n.dot(fit.e2), -along * n.dot(fit.e1), -along * n.dot(fit.e2), -1.0;
-  const double w = tukey_weight(residual, gate);
+  const double w = tukey(residual / gate);
   out.h.noalias() += w * j * j.transpose();
   out.g += w * residual * j;
   out.weight += w;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "dseam/geometry/robust.hpp"
 #include "dseam/seam/surface/surface_fit.hpp"
 
 namespace dseam::seam {
@@ -12,7 +13,6 @@ namespace {
 
 constexpr double kTurnRad = 2.0 * std::numbers::pi;
 constexpr double kInnerSpacings = 2.0;
-constexpr double kTukeyScales = 4.685 * 1.4826;  // On the median absolute residual.
 constexpr double kPatchMm = 8.0;  // The length over which depth noise hangs together.
 constexpr double kMinPatchWeight = 3.0;
 constexpr double kFullPatchWeight = 8.0;
@@ -97,20 +97,15 @@ void JointFit::add(const Eigen::Vector3d& p, double outside, double above, bool 
   num_dropped_ += (to_shell ? shell_ : nozzle_).points.append(near) ? 0U : 1U;
 }
 
-// The median absolute residual of the points clear of the joint.
-double JointFit::scale_of(const Side& side) noexcept {
+// The robust cut from the residuals of the points clear of the joint; 0 where they are few.
+double JointFit::cut_of(const Side& side) noexcept {
   std::size_t n = 0;
   for (const NearPoint& q : side.points.view()) {
     if (q.away_mm > inner_mm_) {
       scratch_[n++] = static_cast<float>(std::abs(q.rest_mm));
     }
   }
-  if (n < kMinPoints) {
-    return 0.0;
-  }
-  const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(n / 2);
-  std::nth_element(scratch_.begin(), middle, scratch_.begin() + static_cast<std::ptrdiff_t>(n));
-  return static_cast<double>(*middle) + 1e-4;
+  return n < kMinPoints ? 0.0 : geometry::tukey_cut_mm(scratch_.first(n));
 }
 
 // Distances from the surface, and what the residual's model leaves of them.
@@ -126,14 +121,14 @@ bool JointFit::refine(Side& side, Surface& surface) noexcept {
   side.residual.reset(surface);
   const std::size_t stride = 1 + side.points.size() / kEnoughToRefine;
   for (int i = 0; i < kRefinements; ++i) {
-    const double cut = kTukeyScales * scale_of(side);
+    const double cut = cut_of(side);
     if (cut == 0.0) {
       return false;
     }
     SurfaceEquations equations;
     for (std::size_t k = 0; k < side.points.size(); k += stride) {
       const NearPoint& q = side.points[k];
-      const double weight = q.away_mm > inner_mm_ ? tukey(q.distance_mm / cut) : 0.0;
+      const double weight = q.away_mm > inner_mm_ ? geometry::tukey(q.distance_mm / cut) : 0.0;
       if (weight > 0.0) {
         equations.add(surface, pivot_ + q.from_pivot.cast<double>(), weight);
       }
@@ -158,7 +153,7 @@ void JointFit::model(Side& side, Surface& surface) noexcept {
                        kTurnRad * joint_.nozzle.radius_mm / static_cast<double>(patches_round_),
                        (band_mm_ - inner_mm_) / double{kPatchesAway}};
   for (int round = 0; round < kModelRounds; ++round) {
-    const double cut = kTukeyScales * scale_of(side);
+    const double cut = cut_of(side);
     const std::size_t count = collect_patches(side, cut);
     side.fitted = cut > 0.0 && side.residual.fit(patches_.first(count), grid);
     if (!side.fitted) {
@@ -169,7 +164,7 @@ void JointFit::model(Side& side, Surface& surface) noexcept {
     }
     measure(side, surface);
   }
-  const double cut = kTukeyScales * scale_of(side);
+  const double cut = cut_of(side);
   for (NearPoint& q : side.points.items()) {
     q.trusted = std::abs(q.rest_mm) < cut;
   }
@@ -180,7 +175,7 @@ std::size_t JointFit::collect_patches(const Side& side, double cut_mm) noexcept 
   std::fill_n(sums_.begin(), used, PatchSum{});
   const double width = (band_mm_ - inner_mm_) / double{kPatchesAway};
   for (const NearPoint& q : side.points.view()) {
-    const double weight = q.away_mm > inner_mm_ ? tukey(q.rest_mm / cut_mm) : 0.0;
+    const double weight = q.away_mm > inner_mm_ ? geometry::tukey(q.rest_mm / cut_mm) : 0.0;
     if (!(weight > 0.0)) {
       continue;
     }

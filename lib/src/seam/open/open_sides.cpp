@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dseam/geometry/robust.hpp"
 #include "dseam/seam/surface/surface_fit.hpp"
 
 namespace dseam::seam {
@@ -12,7 +13,6 @@ namespace {
 constexpr double kBandMm = 20.0;
 constexpr double kBeyondMm = 12.0;  // Of the track's ends, which cells gave.
 constexpr double kInnerSpacings = 2.0;
-constexpr double kTukeyScales = 4.685 * 1.4826;  // On the median absolute residual.
 constexpr std::size_t kMinPoints = 60;
 constexpr int kRefinements = 3;
 constexpr double kPatchMm = 8.0;  // The length over which depth noise hangs together.
@@ -88,7 +88,7 @@ void OpenSides::select(const cloud::CloudView& cloud, const OpenJoint& joint,
   }
 }
 
-// The robust cut from the median absolute residual of the points clear of the seam.
+// The robust cut from the residuals of the points clear of the seam; 0 where they are few.
 double OpenSides::cut_of(const Side& side) noexcept {
   std::size_t n = 0;
   for (const Point& q : side.points.view()) {
@@ -96,12 +96,7 @@ double OpenSides::cut_of(const Side& side) noexcept {
       scratch_[n++] = std::abs(q.rest_mm);
     }
   }
-  if (n < kMinPoints) {
-    return 0.0;
-  }
-  const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(n / 2);
-  std::nth_element(scratch_.begin(), middle, scratch_.begin() + static_cast<std::ptrdiff_t>(n));
-  return kTukeyScales * (double{*middle} + 1e-4);
+  return n < kMinPoints ? 0.0 : geometry::tukey_cut_mm(scratch_.first(n));
 }
 
 bool OpenSides::refine(std::size_t side, OpenJoint& joint) noexcept {
@@ -113,8 +108,9 @@ bool OpenSides::refine(std::size_t side, OpenJoint& joint) noexcept {
     }
     SurfaceEquations equations;
     for (const Point& q : sides_[side].points.view()) {
-      const double weight =
-          double{q.away_mm} > kInnerSpacings * spacing_mm_ ? tukey(double{q.off_mm} / cut) : 0.0;
+      const double weight = double{q.away_mm} > kInnerSpacings * spacing_mm_
+                                ? geometry::tukey(double{q.off_mm} / cut)
+                                : 0.0;
       if (weight > 0.0) {
         equations.add(surface, pivot_ + q.from_pivot.cast<double>(), weight);
       }
@@ -147,7 +143,7 @@ bool OpenSides::model(Side& side) noexcept {
   for (const Point& q : side.points.view()) {
     const double place = (double{q.s_mm} - start_mm_) / length * static_cast<double>(columns);
     const double row = (double{q.away_mm} - inner) / (kBandMm - inner) * double{kRows};
-    const double weight = tukey(double{q.off_mm} / side.cut_mm);
+    const double weight = geometry::tukey(double{q.off_mm} / side.cut_mm);
     if (row < 0.0 || place < 0.0 || place >= static_cast<double>(columns) || !(weight > 0.0)) {
       continue;
     }

@@ -82,7 +82,7 @@ class JointFit {
   void measure(Side& side, const Surface& surface) const noexcept;
   bool refine(Side& side, Surface& surface) noexcept;
   void model(Side& side, Surface& surface) noexcept;
-  double scale_of(const Side& side) noexcept;
+  double cut_of(const Side& side) noexcept;
   std::size_t collect_patches(const Side& side, double cut_mm) noexcept;
 
   [[nodiscard]] bool in_bore(const Eigen::Vector3d& p, double outside) const noexcept;

@@ -25,12 +25,6 @@ class SurfaceEquations {
   double squares_ = 0.0;
 };
 
-/// Tukey's weight of a residual that is `scaled` = residual / cut: 0 from 1 on.
-[[nodiscard]] constexpr double tukey(double scaled) noexcept {
-  const double inside = 1.0 - scaled * scaled;
-  return inside > 0.0 ? inside * inside : 0.0;
-}
-
 /// A first surface of the kind from positions and normals of a small patch.
 ///
 /// Shape:   normals of the patch all to one side.
