@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -67,6 +68,31 @@ std::vector<Eigen::Vector3d> saddle(std::size_t count) {
   return points;
 }
 
+Eigen::Vector3d middle_of(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : points) {
+    sum += p;
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+/// Between neighbours by their angle about `axis` through `origin`.
+double largest_hole_rad(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& origin,
+                        const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d u = axis.unitOrthogonal();
+  const Eigen::Vector3d v = axis.cross(u);
+  std::vector<double> angles;
+  for (const Eigen::Vector3d& p : points) {
+    angles.push_back(std::atan2((p - origin).dot(v), (p - origin).dot(u)));
+  }
+  std::sort(angles.begin(), angles.end());
+  double hole = angles.front() + 2.0 * std::numbers::pi - angles.back();
+  for (std::size_t i = 1; i < angles.size(); ++i) {
+    hole = std::max(hole, angles[i] - angles[i - 1]);
+  }
+  return hole;
+}
+
 TEST_F(MeasuredCurve, the_papers_points_give_the_papers_part) {
   const std::vector<Eigen::Vector3d> points = paper_points();
   ASSERT_EQ(points.size(), 546U);
@@ -81,6 +107,23 @@ TEST_F(MeasuredCurve, the_papers_points_give_the_papers_part) {
   EXPECT_NEAR(report.axes_offset_mm, 1.4, 0.5);
   EXPECT_LT(report.largest_hole_rad / kDegree, 6.3);
   EXPECT_NEAR(report.length_mm, 404.0, 2.0);
+}
+
+// How "largest hole 6.3 degrees" can be read: of the 526 points that the paper counts, seen from
+// their middle. About the branch's axis itself it is 6.9 degrees, and 3.4 of all 546.
+TEST_F(MeasuredCurve,
+       the_526_points_nearest_the_branch_leave_a_hole_of_6_3_degrees_from_their_middle) {
+  std::vector<Eigen::Vector3d> points = paper_points();
+  ASSERT_EQ(points.size(), 546U);
+  Fitter fitter;
+  const Surface branch = fitter.fit(points).nozzle;
+  std::sort(points.begin(), points.end(), [&](const auto& a, const auto& b) {
+    return std::abs(signed_distance(branch, a)) < std::abs(signed_distance(branch, b));
+  });
+  points.resize(526);
+
+  EXPECT_NEAR(largest_hole_rad(points, middle_of(points), branch.axis) / kDegree, 6.3, 0.05);
+  EXPECT_NEAR(largest_hole_rad(points, branch.point, branch.axis) / kDegree, 6.9, 0.05);
 }
 
 TEST_F(MeasuredCurve, the_papers_points_lie_as_near_as_thirteen_coefficients_an_axis_allow) {
