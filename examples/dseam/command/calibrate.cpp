@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
@@ -16,11 +15,6 @@
 
 namespace dseam::program {
 namespace {
-
-struct Options {
-  std::filesystem::path pairs;
-  std::filesystem::path out;
-};
 
 std::string fault_of(const calibration::HandEye& result) {
   using calibration::HandEyeVerdict;
@@ -62,7 +56,9 @@ void print(const calibration::HandEye& result, const std::filesystem::path& file
   std::cout << "written: " << file.string() << '\n';
 }
 
-ExitCode run(const Options& options, const Invocation& invocation) {
+}  // namespace
+
+ExitCode run_calibrate(const CalibrateOptions& options, const Invocation& invocation) {
   Settings settings;
   invocation.configure(settings);
   OutputFolder folder(options.out);
@@ -82,20 +78,6 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   folder.commit();
   print(result.value(), folder.path("hand_eye.json"));
   return ExitCode::kDone;
-}
-
-}  // namespace
-
-void add_calibrate(CLI::App& app, Invocation& invocation) {
-  auto* command = app.add_subcommand("calibrate", "where the camera sits on the robot's flange");
-  auto options = std::make_shared<Options>();
-  command
-      ->add_option("pairs", options->pairs, "pairs of poses (JSON), or a scan set of fixed markers")
-      ->required();
-  command->add_option("--out", options->out, "folder for hand_eye.json")->required();
-  command->callback([options, &invocation] {
-    invocation.run = [options](const Invocation& invoked) { return run(*options, invoked); };
-  });
 }
 
 }  // namespace dseam::program

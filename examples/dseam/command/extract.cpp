@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <memory>
 #include <vector>
 
 #include "command/commands.hpp"
@@ -12,11 +11,6 @@
 namespace dseam::program {
 namespace {
 
-struct Options {
-  std::vector<std::filesystem::path> clouds;
-  std::filesystem::path out;
-};
-
 void append(const LoadedCloud& part, LoadedCloud& whole) {
   whole.x.insert(whole.x.end(), part.x.begin(), part.x.end());
   whole.y.insert(whole.y.end(), part.y.begin(), part.y.end());
@@ -24,7 +18,7 @@ void append(const LoadedCloud& part, LoadedCloud& whole) {
   whole.num_not_finite += part.num_not_finite;
 }
 
-LoadedCloud read_all(const Options& options, double mm_per_unit, std::size_t max_points) {
+LoadedCloud read_all(const ExtractOptions& options, double mm_per_unit, std::size_t max_points) {
   LoadedCloud whole;
   for (const std::filesystem::path& file : options.clouds) {
     append(read_cloud(file, mm_per_unit), whole);
@@ -45,7 +39,9 @@ std::string names_of(const std::vector<std::filesystem::path>& files) {
   return names;
 }
 
-ExitCode run(const Options& options, const Invocation& invocation) {
+}  // namespace
+
+ExitCode run_extract(const ExtractOptions& options, const Invocation& invocation) {
   Settings settings;
   invocation.configure(settings);
   OutputFolder folder(options.out);
@@ -63,20 +59,6 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   write_products(job, folder);
   print_summary(job, folder);
   return exit_code_of(job.seam_report);
-}
-
-}  // namespace
-
-void add_extract(CLI::App& app, Invocation& invocation) {
-  auto* command = app.add_subcommand("extract", "seam of clouds that are already in one frame");
-  auto options = std::make_shared<Options>();
-  command->add_option("cloud", options->clouds, "PLY or PCD files")->required();
-  command->add_option("--seam", invocation.seam, "a ring, or the line between two plates")
-      ->check(CLI::IsMember({"closed", "open"}));
-  command->add_option("--out", options->out, "folder for the results")->required();
-  command->callback([options, &invocation] {
-    invocation.run = [options](const Invocation& invoked) { return run(*options, invoked); };
-  });
 }
 
 }  // namespace dseam::program

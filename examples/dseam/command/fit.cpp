@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
-#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -18,11 +17,6 @@ namespace dseam::program {
 namespace {
 
 using seam::ClosedCurveFit;
-
-struct Options {
-  std::filesystem::path points;
-  std::filesystem::path out;
-};
 
 std::vector<Eigen::Vector3d> vectors_of(const LoadedCloud& cloud) {
   std::vector<Eigen::Vector3d> points;
@@ -42,7 +36,9 @@ void print(const ClosedCurveFit::Report& fit) {
             << " degrees, " << fixed(fit.largest_hole_mm, 1) << " mm\n";
 }
 
-ExitCode run(const Options& options, const Invocation& invocation) {
+}  // namespace
+
+ExitCode run_fit(const FitOptions& options, const Invocation& invocation) {
   Settings settings;
   invocation.configure(settings);
   OutputFolder folder(options.out);
@@ -70,19 +66,6 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   }
   print_summary(job, folder);
   return exit_code_of(job.seam_report);
-}
-
-}  // namespace
-
-void add_fit(CLI::App& app, Invocation& invocation) {
-  auto* command = app.add_subcommand("fit", "closed curve through unordered seam points");
-  auto options = std::make_shared<Options>();
-  command->add_option("points", options->points, "CSV; the first three columns are x, y, z")
-      ->required();
-  command->add_option("--out", options->out, "folder for the results")->required();
-  command->callback([options, &invocation] {
-    invocation.run = [options](const Invocation& invoked) { return run(*options, invoked); };
-  });
 }
 
 }  // namespace dseam::program

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,7 +10,7 @@
 
 namespace dseam::program {
 
-/// What every command is told, and the one command that was chosen.
+/// What every command is told.
 struct Invocation {
   std::filesystem::path config_file;
   std::vector<std::string> assignments;  ///< --set section.name=value
@@ -19,7 +18,6 @@ struct Invocation {
   std::string reference;  ///< Empty: as configured.
   std::string method;     ///< Empty: as configured.
   std::string seam;       ///< Closed or open; empty: as configured.
-  std::function<ExitCode(const Invocation&)> run;
 
   /// Millimetres in one unit of the clouds read.
   [[nodiscard]] double mm_per_unit() const { return unit == "m" ? 1000.0 : 1.0; }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <memory>
 #include <vector>
 
 #include "command/commands.hpp"
@@ -14,19 +13,13 @@
 namespace dseam::program {
 namespace {
 
-struct Options {
-  std::vector<std::filesystem::path> inputs;
-  std::filesystem::path hand_eye;
-  std::filesystem::path out;
-};
-
 std::size_t num_used(std::span<const splice::SplicedView> views) {
   return static_cast<std::size_t>(std::count_if(
       views.begin(), views.end(),
       [](const splice::SplicedView& view) { return view.state == splice::ViewState::kUsed; }));
 }
 
-ExitCode splice_clouds(const Options& options, const Invocation& invocation) {
+ExitCode splice_clouds(const SpliceOptions& options, const Invocation& invocation) {
   OutputFolder folder(options.out);
   JobReport job;
   job.command = "splice";
@@ -43,7 +36,7 @@ ExitCode splice_clouds(const Options& options, const Invocation& invocation) {
   return job.weld ? ExitCode::kDone : ExitCode::kRefused;
 }
 
-ExitCode splice_set(const Options& options, const Invocation& invocation) {
+ExitCode splice_set(const SpliceOptions& options, const Invocation& invocation) {
   Settings settings;
   invocation.configure(settings);
   const std::filesystem::path& set = options.inputs.front();
@@ -72,26 +65,14 @@ ExitCode splice_set(const Options& options, const Invocation& invocation) {
   return used > 0 ? ExitCode::kDone : ExitCode::kRefused;
 }
 
-ExitCode run(const Options& options, const Invocation& invocation) {
+}  // namespace
+
+ExitCode run_splice(const SpliceOptions& options, const Invocation& invocation) {
   const bool is_set = std::filesystem::is_directory(options.inputs.front());
   if (is_set && options.inputs.size() > 1) {
     throw Failure(ExitCode::kUsage, "one scan set, or clouds; not both");
   }
   return is_set ? splice_set(options, invocation) : splice_clouds(options, invocation);
-}
-
-}  // namespace
-
-void add_splice(CLI::App& app, Invocation& invocation) {
-  auto* command =
-      app.add_subcommand("splice", "poses and merged cloud of a scan set, or of clouds");
-  auto options = std::make_shared<Options>();
-  command->add_option("input", options->inputs, "scan set, or PLY and PCD files")->required();
-  command->add_option("--hand-eye", options->hand_eye, "hand_eye.json of dseam calibrate");
-  command->add_option("--out", options->out, "folder for the results")->required();
-  command->callback([options, &invocation] {
-    invocation.run = [options](const Invocation& invoked) { return run(*options, invoked); };
-  });
 }
 
 }  // namespace dseam::program

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <iostream>
-#include <memory>
 
 #include "command/commands.hpp"
 #include "files/hand_eye_file.hpp"
@@ -17,16 +16,8 @@
 namespace dseam::program {
 namespace {
 
-struct Options {
-  std::string camera;
-  std::string robot = "none";
-  bool waive_operator = false;
-  std::filesystem::path hand_eye;
-  std::filesystem::path out;
-  std::filesystem::path truth;
-};
-
-std::optional<geometry::RigidTransform> hand_eye_of(const Options& options, Settings& settings) {
+std::optional<geometry::RigidTransform> hand_eye_of(const WeldOptions& options,
+                                                    Settings& settings) {
   if (options.hand_eye.empty()) {
     return std::nullopt;
   }
@@ -50,7 +41,7 @@ void write_truth_of(const ScanSource& source, const std::filesystem::path& folde
 }
 
 /// A calibration that no view could use must not go unnoticed.
-void check_hand_eye(const Options& options, const std::vector<ScannedView>& views) {
+void check_hand_eye(const WeldOptions& options, const std::vector<ScannedView>& views) {
   const bool used = std::any_of(views.begin(), views.end(), [](const ScannedView& view) {
     return view.T_base_flange.has_value();
   });
@@ -61,7 +52,7 @@ void check_hand_eye(const Options& options, const std::vector<ScannedView>& view
 }
 
 /// Plans and drives; returns what the program should end with.
-ExitCode weld_seam(const Options& options, const Settings& settings, OutputFolder& folder,
+ExitCode weld_seam(const WeldOptions& options, const Settings& settings, OutputFolder& folder,
                    const std::atomic<bool>& interrupted, Progress& progress, MotionJob& motion,
                    JobReport& job) {
   Stopwatch watch;
@@ -96,7 +87,7 @@ ExitCode weld_seam(const Options& options, const Settings& settings, OutputFolde
 }
 
 /// The configuration and what the command line adds to it; refused where no weld can follow it.
-Settings settings_of(const Options& options, const Invocation& invocation) {
+Settings settings_of(const WeldOptions& options, const Invocation& invocation) {
   Settings settings;
   invocation.configure(settings);
   if (settings.shape == SeamShape::kOpen) {
@@ -114,7 +105,9 @@ Settings settings_of(const Options& options, const Invocation& invocation) {
   return settings;
 }
 
-ExitCode run(const Options& options, const Invocation& invocation) {
+}  // namespace
+
+ExitCode run_weld(const WeldOptions& options, const Invocation& invocation) {
   Settings settings = settings_of(options, invocation);
   check_robot(options.robot, options.waive_operator);
   const auto T_flange_camera = hand_eye_of(options, settings);
@@ -148,24 +141,6 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   write_products(job, folder);
   print_summary(job, folder);
   return code;
-}
-
-}  // namespace
-
-void add_weld(CLI::App& app, Invocation& invocation) {
-  auto* command = app.add_subcommand("weld", "scan, find the seam, plan the path, weld it");
-  auto options = std::make_shared<Options>();
-  command->add_option("--camera", options->camera, "sim, replay:SET, aravis:ID or v4l2:DEV")
-      ->required();
-  command->add_option("--robot", options->robot, "sim, can:IFACE or none")->capture_default_str();
-  command->add_flag("--waive-operator", options->waive_operator,
-                    "arm a real robot without an operator's key on this terminal");
-  command->add_option("--hand-eye", options->hand_eye, "hand_eye.json of dseam calibrate");
-  command->add_option("--truth", options->truth, "folder for the simulated cell's truth");
-  command->add_option("--out", options->out, "folder for the results")->required();
-  command->callback([options, &invocation] {
-    invocation.run = [options](const Invocation& invoked) { return run(*options, invoked); };
-  });
 }
 
 }  // namespace dseam::program

@@ -6,21 +6,16 @@
 
 namespace dseam::program {
 
-void add_cameras(CLI::App& app, Invocation& invocation) {
-  auto* command = app.add_subcommand("cameras", "list the cameras that can be seen");
-  command->callback([&invocation] {
-    invocation.run = [](const Invocation&) {
-      for (const hal::CameraInfo& camera : list_all_cameras()) {
-        std::cout << camera.backend << ':' << camera.id << "  " << camera.model << "  "
-                  << camera.address << '\n';
-        if (!camera.why_not.empty()) {
-          std::cout << "  cannot be opened: " << camera.why_not << '\n';
-        }
-      }
-      std::cout << "sim  the simulated cell\n";
-      return ExitCode::kDone;
-    };
-  });
+ExitCode run_cameras(const CamerasOptions& /*options*/, const Invocation& /*invocation*/) {
+  for (const hal::CameraInfo& camera : list_all_cameras()) {
+    std::cout << camera.backend << ':' << camera.id << "  " << camera.model << "  "
+              << camera.address << '\n';
+    if (!camera.why_not.empty()) {
+      std::cout << "  cannot be opened: " << camera.why_not << '\n';
+    }
+  }
+  std::cout << "sim  the simulated cell\n";
+  return ExitCode::kDone;
 }
 
 }  // namespace dseam::program

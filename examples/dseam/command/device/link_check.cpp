@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <memory>
 
 #include "command/commands.hpp"
 
@@ -29,7 +28,10 @@ void print(const std::string& interface, const hal::socketcan::LinkInfo& info) {
   std::cout << '\n';
 }
 
-ExitCode run(const std::string& interface, const Invocation& invocation) {
+}  // namespace
+
+ExitCode run_link_check(const LinkCheckOptions& options, const Invocation& invocation) {
+  const std::string& interface = options.interface;
   Settings settings;
   invocation.configure(settings);
   const auto info = hal::socketcan::read_link(interface);
@@ -48,17 +50,6 @@ ExitCode run(const std::string& interface, const Invocation& invocation) {
       std::any_of(findings.begin(), findings.end(), [](const Finding& f) { return f.refuse; });
   std::cout << (refused ? "the weld link cannot run on it\n" : "the weld link can run on it\n");
   return refused ? ExitCode::kDevice : ExitCode::kDone;
-}
-
-}  // namespace
-
-void add_link_check(CLI::App& app, Invocation& invocation) {
-  auto* command = app.add_subcommand("link-check", "whether a CAN interface will do, and the cure");
-  auto interface = std::make_shared<std::string>();
-  command->add_option("interface", *interface, "CAN interface, as can0")->required();
-  command->callback([interface, &invocation] {
-    invocation.run = [interface](const Invocation& invoked) { return run(*interface, invoked); };
-  });
 }
 
 }  // namespace dseam::program

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
 #include <iostream>
-#include <memory>
 
 #include "command/commands.hpp"
 #include "dseam/hal/replay/recorder.hpp"
@@ -11,11 +10,6 @@
 
 namespace dseam::program {
 namespace {
-
-struct Options {
-  std::string camera;
-  std::filesystem::path out;
-};
 
 void fail_if(const std::optional<hal::replay::LoadFault>& fault) {
   if (fault) {
@@ -39,7 +33,9 @@ void record_view(ScanSource& source, hal::replay::Recorder& recorder) {
   fail_if(recorder.add(frame, pose));
 }
 
-ExitCode run(const Options& options, const Invocation& invocation) {
+}  // namespace
+
+ExitCode run_record(const RecordOptions& options, const Invocation& invocation) {
   Settings settings;
   invocation.configure(settings);
   const std::atomic<bool>& interrupted = watch_for_interrupt();
@@ -64,19 +60,6 @@ ExitCode run(const Options& options, const Invocation& invocation) {
   std::cout << "recorded " << recorder.value().num_frames() << " views: " << options.out.string()
             << '\n';
   return ExitCode::kDone;
-}
-
-}  // namespace
-
-void add_record(CLI::App& app, Invocation& invocation) {
-  auto* command = app.add_subcommand("record", "write a scan set from any camera");
-  auto options = std::make_shared<Options>();
-  command->add_option("--camera", options->camera, "sim, replay:SET, aravis:ID or v4l2:DEV")
-      ->required();
-  command->add_option("--out", options->out, "the new scan set")->required();
-  command->callback([options, &invocation] {
-    invocation.run = [options](const Invocation& invoked) { return run(*options, invoked); };
-  });
 }
 
 }  // namespace dseam::program

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
-#include <memory>
 
 #include "command/commands.hpp"
 #include "dseam/hal/sim/sim_robot.hpp"
@@ -13,7 +12,10 @@ namespace {
 
 constexpr std::int64_t kPeriodNs = 1'000'000;
 
-ExitCode run(const std::string& interface, const Invocation& invocation) {
+}  // namespace
+
+ExitCode run_robot(const RobotOptions& options, const Invocation& invocation) {
+  const std::string& interface = options.interface;
   Settings settings;
   invocation.configure(settings);
   const auto& addressing = settings.session.link.addressing;
@@ -33,18 +35,6 @@ ExitCode run(const std::string& interface, const Invocation& invocation) {
             << "arc " << (receiver.arc_on() ? "on" : "off") << ", link fault "
             << link::name(receiver.fault()) << '\n';
   return ExitCode::kDone;
-}
-
-}  // namespace
-
-void add_robot(CLI::App& app, Invocation& invocation) {
-  auto* command =
-      app.add_subcommand("robot", "the reference robot: the other end of the weld link");
-  auto interface = std::make_shared<std::string>();
-  command->add_option("--can", *interface, "CAN interface")->required();
-  command->callback([interface, &invocation] {
-    invocation.run = [interface](const Invocation& invoked) { return run(*interface, invoked); };
-  });
 }
 
 }  // namespace dseam::program

@@ -37,23 +37,15 @@ void measure_wake_up(double seconds) {
 
 }  // namespace
 
-void add_rt_report(CLI::App& app, Invocation& invocation) {
-  auto* command = app.add_subcommand("rt-report", "what this machine gives to real-time threads");
-  auto seconds = std::make_shared<double>(0.0);
-  command->add_option("--seconds", *seconds, "measure for so long how late a cycle wakes up")
-      ->check(CLI::Range(0.0, 1e6));
-  command->callback([seconds, &invocation] {
-    invocation.run = [seconds](const Invocation&) {
-      const auto granted = rt::set_up_thread({});
-      std::array<char, 8192> text{};
-      const std::size_t size = rt::format(rt::rt_report(granted.value()), text);
-      std::cout.write(text.data(), static_cast<std::streamsize>(size)).flush();
-      if (*seconds > 0.0) {
-        measure_wake_up(*seconds);
-      }
-      return ExitCode::kDone;
-    };
-  });
+ExitCode run_rt_report(const RtReportOptions& options, const Invocation& /*invocation*/) {
+  const auto granted = rt::set_up_thread({});
+  std::array<char, 8192> text{};
+  const std::size_t size = rt::format(rt::rt_report(granted.value()), text);
+  std::cout.write(text.data(), static_cast<std::streamsize>(size)).flush();
+  if (options.seconds > 0.0) {
+    measure_wake_up(options.seconds);
+  }
+  return ExitCode::kDone;
 }
 
 }  // namespace dseam::program
