@@ -2,14 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """check_sources.py ROOT: the rules of the house that a compiler does not know.
 
-Includes point down the layers, files and functions are short enough to be read, every source names
-its licence, no file knows the machine that it was written on, and no layer reads the wall clock.
+Includes point down the layers, files, functions and folders are short enough to be read, every source
+names its licence, no file knows the machine that it was written on, and no layer reads the wall clock.
 """
+import collections
 import pathlib
 import re
 import sys
 
 MAX_FILE_LINES = 300
+MAX_FOLDER_FILES = 12
 MAX_FUNCTION_LINES = 40
 MAX_TEST_FUNCTION_LINES = 60  # Arrange, act and assert of one behaviour stand together.
 SOURCES = (".cpp", ".hpp")
@@ -55,11 +57,22 @@ WALL_CLOCK = re.compile(r"CLOCK_REALTIME|system_clock|gettimeofday|[^\w]time\(nu
 READS_WALL_CLOCK = {"hal/aravis/src/session/session_frames.cpp"}
 
 
+TOPS = ("lib", "hal", "rt", "examples", "tests", "cmake")
+
+
 def files_of(root):
-    for top in ("lib", "hal", "rt", "examples", "tests", "cmake"):
+    for top in TOPS:
         for path in sorted((root / top).rglob("*")):
             if path.suffix in SOURCES + SCRIPTS and "__pycache__" not in path.parts:
                 yield path
+
+
+def crowded_folders(root):
+    files = (path for top in TOPS for path in (root / top).rglob("*")
+             if path.is_file() and "__pycache__" not in path.parts)
+    for folder, count in collections.Counter(path.parent for path in files).items():
+        if count > MAX_FOLDER_FILES:
+            yield folder.relative_to(root), count
 
 
 def layer_of(included):
@@ -142,6 +155,9 @@ def main():
         for number, fault in faults_of(path, name):
             print(f"{name}:{number}: {fault}")
             bad += 1
+    for folder, count in crowded_folders(root):
+        print(f"{folder}: {count} files; {MAX_FOLDER_FILES} at most")
+        bad += 1
     print(f"{seen} files, {bad} faults")
     return 1 if bad or seen < 400 else 0
 
