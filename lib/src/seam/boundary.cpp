@@ -9,6 +9,7 @@
 #include "../geometry/vec3_lanes.hpp"
 #include "dseam/base/expects.hpp"
 #include "dseam/base/lane_packer.hpp"
+#include "largest_gap.hpp"
 #include "turn.hpp"
 
 namespace dseam::seam {
@@ -17,10 +18,12 @@ namespace {
 using geometry::Vec3f;
 using geometry::Vec3Lanes;
 using lanes::FloatLanes;
+using lanes::IntLanes;
 using lanes::kLanes;
 using lanes::splat;
 using search::Cell;
 
+constexpr float kSectorRad = kFullTurn / static_cast<float>(BoundaryTest::kSectors);
 constexpr float kSectorsPerRad = static_cast<float>(BoundaryTest::kSectors) / kFullTurn;
 constexpr float kLastSector = static_cast<float>(BoundaryTest::kSectors - 1);
 
@@ -29,29 +32,25 @@ constexpr float kSquaredSteepness = 1.0e-8F;
 
 bool is_positive(float value) noexcept { return value > 0.0F && std::isfinite(value); }
 
-/// Where the surface is open.
-struct Gap {
-  float size_rad;
-  float middle_rad;
+// The tangent planes of eight points.
+struct Plane {
+  Vec3Lanes u;
+  Vec3Lanes v;
 };
 
-// The largest gap between one neighbour's angle and the next.
-Gap largest_gap(std::uint64_t hit, const float* least, const float* greatest) noexcept {
-  if (hit == 0) {
-    return {kFullTurn, 0.0F};
-  }
-  const auto last = static_cast<std::size_t>(63 - std::countl_zero(hit));
-  float from = greatest[last] - kFullTurn;
-  float size_rad = 0.0F;
-  float start_rad = 0.0F;
-  for (; hit != 0; hit &= hit - 1) {
-    const auto sector = static_cast<std::size_t>(std::countr_zero(hit));
-    const float size = least[sector] - from;
-    start_rad = size > size_rad ? from : start_rad;
-    size_rad = size > size_rad ? size : size_rad;
-    from = greatest[sector];
-  }
-  return {size_rad, size_rad > 0.0F ? start_rad + 0.5F * size_rad : 0.0F};
+Plane plane_across(const Vec3Lanes& normal) noexcept {
+  // Without the smaller of x and y the vector across cannot vanish.
+  const IntLanes x_is_less = lanes::magnitude(normal.x) < lanes::magnitude(normal.y);
+  const FloatLanes zero = splat(0.0F);
+  const Vec3Lanes across =
+      geometry::select(x_is_less, Vec3Lanes{zero, normal.z, lanes::negated(normal.y)},
+                       Vec3Lanes{lanes::negated(normal.z), zero, normal.x});
+  const Vec3Lanes v = geometry::unit(across);
+  return {geometry::cross(normal, v), v};
+}
+
+Vec3Lanes splat_of(const Vec3Lanes& eight, std::size_t i) noexcept {
+  return {splat(eight.x[i]), splat(eight.y[i]), splat(eight.z[i])};
 }
 
 }  // namespace
@@ -60,71 +59,82 @@ Result<BoundaryTest> BoundaryTest::make(const Config& config, Arena& arena) noex
   if (!is_positive(config.radius_mm) || !is_positive(config.min_gap_rad)) {
     return Errc::kInvalidArgument;
   }
-  BoundaryTest stage(config, arena.take<Sectors>(kLanes), arena.take<Directions>(1));
+  BoundaryTest stage(config, arena.take<Turns>(kLanes), arena.take<Offsets>(1));
   if (arena.exhausted()) {
     return Errc::kOutOfMemory;
   }
   return stage;
 }
 
-void BoundaryTest::Sectors::start(Vec3f its_point, Vec3f normal) noexcept {
+void BoundaryTest::Sectors::clear() noexcept {
   hit = 0;
-  count = 0;
   std::fill_n(least, kSectors, std::numeric_limits<float>::max());
   std::fill_n(greatest, kSectors, -1.0F);
-  point = its_point;
-  // Without the smaller of x and y the vector across cannot vanish.
-  const Vec3f across = std::fabs(normal.x) < std::fabs(normal.y) ? Vec3f{0.0F, normal.z, -normal.y}
-                                                                 : Vec3f{-normal.z, 0.0F, normal.x};
-  v = across * (1.0F / geometry::norm(across));
-  u = geometry::cross(normal, v);
 }
 
-void BoundaryTest::Sectors::project(const search::NearView& points, float squared_radius,
-                                    Directions& directions) noexcept {
-  const Vec3Lanes at{splat(point.x), splat(point.y), splat(point.z)};
-  const Vec3Lanes along_u{splat(u.x), splat(u.y), splat(u.z)};
-  const Vec3Lanes along_v{splat(v.x), splat(v.y), splat(v.z)};
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < points.count; i += kLanes) {
-    const search::EightPoints p = search::EightPoints::of(points, i);
-    const Vec3Lanes d{p.x - at.x, p.y - at.y, p.z - at.z};
-    const FloatLanes squared = dot(d, d);
-    const lanes::IntLanes near = squared <= splat(squared_radius);
-    const FloatLanes a = dot(d, along_u);
-    const FloatLanes b = dot(d, along_v);
-    const FloatLanes sum = lanes::magnitude(a) + lanes::magnitude(b);
-    const lanes::IntLanes has_angle = near & (squared * splat(kSquaredSteepness) < sum * sum);
-    count += static_cast<std::uint32_t>(std::popcount(lanes::bits(near)));
-    const std::uint32_t chosen = lanes::bits(has_angle);
-    const lanes::LanePacker packer(chosen);
-    packer.store(a, directions.a + kept);
-    packer.store(b, directions.b + kept);
-    kept += static_cast<std::size_t>(std::popcount(chosen));
+void BoundaryTest::Sectors::add(const float* turns, std::size_t count) noexcept {
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    const FloatLanes scaled = lanes::load(turns + i) * splat(kSectorsPerRad);
+    std::int32_t sectors[kLanes];
+    lanes::store(lanes::to_int(lanes::min(scaled, splat(kLastSector))), sectors);
+    for (std::size_t j = 0; j < std::min(kLanes, count - i); ++j) {
+      const auto sector = static_cast<std::size_t>(sectors[j]);
+      least[sector] = std::min(least[sector], turns[i + j]);
+      greatest[sector] = std::max(greatest[sector], turns[i + j]);
+      hit |= std::uint64_t{1} << sector;
+    }
   }
-  directions.count = kept;
-  lanes::store(splat(1.0F), directions.a + kept);  // What follows has an angle too, of no meaning.
-  lanes::store(splat(0.0F), directions.b + kept);
 }
 
-void BoundaryTest::Sectors::add(const search::NearView& points, float squared_radius,
-                                Directions& directions) noexcept {
-  project(points, squared_radius, directions);
-  float* const turns = directions.a;
-  for (std::size_t i = 0; i < directions.count; i += kLanes) {
-    const FloatLanes a = lanes::load(directions.a + i);
-    const FloatLanes b = lanes::load(directions.b + i);
-    const FloatLanes turn = turn_of(a, b, lanes::magnitude(a) + lanes::magnitude(b));
-    lanes::store(turn, turns + i);
-    lanes::store(lanes::to_int(lanes::min(turn * splat(kSectorsPerRad), splat(kLastSector))),
-                 directions.sector + i);
+Gap BoundaryTest::Sectors::largest_gap() const noexcept {
+  const auto last = static_cast<std::size_t>(63 - std::countl_zero(hit));
+  float from = greatest[last] - kFullTurn;
+  Gap gap{0.0F, 0.0F};
+  for (std::uint64_t left = hit; left != 0; left &= left - 1) {
+    const auto sector = static_cast<std::size_t>(std::countr_zero(left));
+    const float size_rad = least[sector] - from;
+    gap = size_rad > gap.size_rad ? Gap{size_rad, from + 0.5F * size_rad} : gap;
+    from = greatest[sector];
   }
-  for (std::size_t i = 0; i < directions.count; ++i) {
-    const auto sector = static_cast<std::size_t>(directions.sector[i]);
-    least[sector] = std::min(least[sector], turns[i]);
-    greatest[sector] = std::max(greatest[sector], turns[i]);
-    hit |= std::uint64_t{1} << sector;
+  return gap;
+}
+
+void BoundaryTest::Turns::clear() noexcept {
+  num_neighbours = 0;
+  num_listed = 0;
+  are_many = false;
+}
+
+void BoundaryTest::Turns::add(const float* turns, std::size_t count) noexcept {
+  if (!are_many && num_listed + count <= kFew) {
+    for (std::size_t i = 0; i < count; i += kLanes) {
+      lanes::store(lanes::load(turns + i), list + num_listed + i);
+    }
+    num_listed += count;
+    return;
   }
+  if (!are_many) {
+    are_many = true;
+    sectors.clear();
+    sectors.add(list, num_listed);
+  }
+  sectors.add(turns, count);
+}
+
+Gap BoundaryTest::Turns::largest_gap() noexcept {
+  if (!are_many) {
+    if (num_listed == 0) {
+      return {kFullTurn, 0.0F};
+    }
+    const Gap gap = largest_gap_of(list, num_listed);
+    // A smaller one may lie within a sector, where it is not to be seen.
+    if (gap.size_rad > 2.0F * kSectorRad) {
+      return gap;
+    }
+    sectors.clear();
+    sectors.add(list, num_listed);
+  }
+  return sectors.largest_gap();
 }
 
 // The eight points of a cell.
@@ -136,30 +146,119 @@ class BoundaryTest::OfCell {
 
   void start(std::uint32_t at) noexcept {
     const Cell& own = tree_.cells()[at];
+    float x[kLanes] = {};
+    float y[kLanes] = {};
+    float z[kLanes] = {};
     with_normal_ = 0;
+    used_ = 0;
     for (std::size_t i = 0; i < kLanes && own.index[i] != search::kNoPoint; ++i) {
-      const Vec3f normal = normal_of(own.index[i]);
-      with_normal_ |= (normal == Vec3f{} ? 0U : 1U) << i;
-      test_.sectors_[i].start({own.x[i], own.y[i], own.z[i]}, normal);
+      x[i] = normals_.nx[own.index[i]];
+      y[i] = normals_.ny[own.index[i]];
+      z[i] = normals_.nz[own.index[i]];
+      with_normal_ |= (Vec3f{x[i], y[i], z[i]} == Vec3f{} ? 0U : 1U) << i;
+      used_ |= 1U << i;
+      test_.turns_[i].clear();
     }
+    plane_ = plane_across({lanes::load(x), lanes::load(y), lanes::load(z)});
   }
-  void add(const search::QueryCell&, const search::NearView& points) noexcept {
-    const float squared_radius = test_.config_.radius_mm * test_.config_.radius_mm;
+
+  void add(const search::QueryCell& query, const search::NearView& points) noexcept {
+    const Vec3Lanes places{query.x, query.y, query.z};
     for (std::uint32_t left = with_normal_; left != 0; left &= left - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(left));
-      test_.sectors_[i].add(points, squared_radius, test_.directions_[0]);
-    }
-  }
-  void finish(std::uint32_t at) noexcept {
-    const Cell& own = tree_.cells()[at];
-    for (std::size_t i = 0; i < kLanes && own.index[i] != search::kNoPoint; ++i) {
-      test_.judge(own.index[i], normal_of(own.index[i]), test_.sectors_[i], out_, report_);
+      Turns& turns = test_.turns_[i];
+      const std::size_t near = find_near(points, splat_of(places, i));
+      turns.num_neighbours += static_cast<std::uint32_t>(near);
+      turns.add(test_.offsets_[0].x, turn_all(near, i));
     }
   }
 
+  void finish(std::uint32_t at) noexcept {
+    float size_rad[kLanes] = {};
+    float middle_rad[kLanes] = {};
+    std::uint32_t too_few = 0;
+    for (std::uint32_t left = with_normal_; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(left));
+      Turns& turns = test_.turns_[i];
+      if (turns.num_neighbours > test_.config_.min_neighbours) {  // A point finds itself too.
+        const Gap gap = turns.largest_gap();
+        size_rad[i] = gap.size_rad;
+        middle_rad[i] = gap.middle_rad;
+      } else {
+        too_few |= 1U << i;
+      }
+    }
+    const FloatLanes sizes = lanes::load(size_rad);
+    write(tree_.cells()[at], sizes, lanes::load(middle_rad));
+    const std::uint32_t open = lanes::bits(splat(test_.config_.min_gap_rad) < sizes);
+    report_.without_normal += count_of(used_ & ~with_normal_);
+    report_.too_few += count_of(too_few);
+    report_.inner += count_of(with_normal_ & ~too_few & ~open);
+  }
+
  private:
-  [[nodiscard]] Vec3f normal_of(std::size_t index) const noexcept {
-    return {normals_.nx[index], normals_.ny[index], normals_.nz[index]};
+  // Packs the offsets of those within the radius, the point itself among them; returns how many.
+  std::size_t find_near(const search::NearView& points, const Vec3Lanes& place) noexcept {
+    Offsets& to = test_.offsets_[0];
+    const FloatLanes limit = splat(test_.config_.radius_mm * test_.config_.radius_mm);
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < points.count; i += kLanes) {
+      const FloatLanes x = lanes::load(points.x + i) - place.x;
+      const FloatLanes y = lanes::load(points.y + i) - place.y;
+      const FloatLanes z = lanes::load(points.z + i) - place.z;
+      const std::uint32_t near = lanes::bits(x * x + y * y + z * z <= limit);
+      const lanes::LanePacker packer(near);
+      packer.store(x, to.x + found);
+      packer.store(y, to.y + found);
+      packer.store(z, to.z + found);
+      found += static_cast<std::size_t>(std::popcount(near));
+    }
+    return found;
+  }
+
+  // Turns the first `count` offsets into angles in the tangent plane of point `i` and packs them
+  // over x; returns how many have one.
+  std::size_t turn_all(std::size_t count, std::size_t i) noexcept {
+    Offsets& from = test_.offsets_[0];
+    const Vec3Lanes u = splat_of(plane_.u, i);
+    const Vec3Lanes v = splat_of(plane_.v, i);
+    std::size_t kept = 0;
+    for (std::size_t at = 0; at < count; at += kLanes) {
+      const Vec3Lanes d{lanes::load(from.x + at), lanes::load(from.y + at),
+                        lanes::load(from.z + at)};
+      const FloatLanes a = dot(d, u);
+      const FloatLanes b = dot(d, v);
+      const FloatLanes sum = lanes::magnitude(a) + lanes::magnitude(b);
+      const IntLanes has_angle = dot(d, d) * splat(kSquaredSteepness) < sum * sum;
+      const std::uint32_t used = first_of(count - at) & lanes::bits(has_angle);
+      lanes::LanePacker(used).store(turn_of(a, b, sum), from.x + kept);
+      kept += static_cast<std::size_t>(std::popcount(used));
+    }
+    return kept;
+  }
+
+  void write(const Cell& own, const FloatLanes& size_rad, const FloatLanes& middle_rad) noexcept {
+    const IntLanes is_before = middle_rad < splat(0.0F);
+    const CosineSineLanes middle =
+        cosine_sine(lanes::select(is_before, middle_rad + splat(kFullTurn), middle_rad));
+    const IntLanes is_open = splat(0.0F) < size_rad;
+    const Vec3Lanes towards = geometry::sum(geometry::scaled(plane_.u, middle.cosine),
+                                            geometry::scaled(plane_.v, middle.sine));
+    const Vec3Lanes open{lanes::keep(is_open, towards.x), lanes::keep(is_open, towards.y),
+                         lanes::keep(is_open, towards.z)};
+    for (std::size_t i = 0; i < kLanes && own.index[i] != search::kNoPoint; ++i) {
+      out_.gap_rad[own.index[i]] = size_rad[i];
+      out_.open_x[own.index[i]] = open.x[i];
+      out_.open_y[own.index[i]] = open.y[i];
+      out_.open_z[own.index[i]] = open.z[i];
+    }
+  }
+
+  [[nodiscard]] static std::uint32_t count_of(std::uint32_t bits) noexcept {
+    return static_cast<std::uint32_t>(std::popcount(bits));
+  }
+  [[nodiscard]] static std::uint32_t first_of(std::size_t count) noexcept {
+    return 0xFFU >> (kLanes - std::min(count, kLanes));
   }
 
   BoundaryTest& test_;
@@ -167,29 +266,10 @@ class BoundaryTest::OfCell {
   const cloud::NormalsView& normals_;
   BoundaryBuffer& out_;
   Report& report_;
+  Plane plane_{};
   std::uint32_t with_normal_ = 0;
+  std::uint32_t used_ = 0;
 };
-
-void BoundaryTest::judge(std::size_t index, Vec3f normal, const Sectors& sectors,
-                         BoundaryBuffer& out, Report& report) const noexcept {
-  const bool has_normal = normal != Vec3f{};
-  const bool enough = sectors.count > config_.min_neighbours;  // A point finds itself too.
-  const Gap gap = has_normal && enough ? largest_gap(sectors.hit, sectors.least, sectors.greatest)
-                                       : Gap{0.0F, 0.0F};
-  Vec3f open;
-  if (gap.size_rad > 0.0F) {
-    const CosineSine middle =
-        cosine_sine(gap.middle_rad < 0.0F ? gap.middle_rad + kFullTurn : gap.middle_rad);
-    open = sectors.u * middle.cosine + sectors.v * middle.sine;
-  }
-  out.gap_rad[index] = gap.size_rad;
-  out.open_x[index] = open.x;
-  out.open_y[index] = open.y;
-  out.open_z[index] = open.z;
-  report.without_normal += has_normal ? 0U : 1U;
-  report.too_few += has_normal && !enough ? 1U : 0U;
-  report.inner += has_normal && enough && !(gap.size_rad > config_.min_gap_rad) ? 1U : 0U;
-}
 
 BoundaryTest::Report BoundaryTest::run(const search::GridIndex& index,
                                        const cloud::NormalsView& normals, BoundaryBuffer& out,

@@ -10,16 +10,17 @@ inline constexpr float kQuarterTurn = 1.57079633F;
 inline constexpr float kHalfTurn = 3.14159265F;
 inline constexpr float kFullTurn = 6.28318531F;
 
-/// For t in [-1, 1], within 1.5e-7.
+/// For t in [-1, 1], within 1.5e-7. Written out: a loop over the coefficients is not unrolled.
 [[nodiscard]] inline lanes::FloatLanes arc_tangent(const lanes::FloatLanes& t) noexcept {
   using lanes::splat;
-  constexpr float kOdd[] = {-0.0559122786F, 0.0964219347F, -0.139086276F,
-                            0.199465647F,   -0.333298594F, 0.999999344F};
   const lanes::FloatLanes t2 = t * t;
   lanes::FloatLanes sum = splat(-0.00405455846F) * t2 + splat(0.021862926F);
-  for (const float coefficient : kOdd) {
-    sum = sum * t2 + splat(coefficient);
-  }
+  sum = sum * t2 + splat(-0.0559122786F);
+  sum = sum * t2 + splat(0.0964219347F);
+  sum = sum * t2 + splat(-0.139086276F);
+  sum = sum * t2 + splat(0.199465647F);
+  sum = sum * t2 + splat(-0.333298594F);
+  sum = sum * t2 + splat(0.999999344F);
   return sum * t;
 }
 
@@ -35,23 +36,33 @@ inline constexpr float kFullTurn = 6.28318531F;
   return lanes::select(b < zero, splat(kFullTurn) - upper, upper);
 }
 
-struct CosineSine {
-  float cosine;
-  float sine;
+struct CosineSineLanes {
+  lanes::FloatLanes cosine;
+  lanes::FloatLanes sine;
 };
 
-/// For an angle in [0, 4 pi], within 1e-6.
-[[nodiscard]] inline CosineSine cosine_sine(float turn_rad) noexcept {
-  const auto quarter = static_cast<int>(turn_rad * (1.0F / kQuarterTurn) + 0.5F);
-  const float t = turn_rad - static_cast<float>(quarter) * kQuarterTurn;
-  const float t2 = t * t;
-  const float s = t + t * t2 * (-0.166666502F + t2 * (0.00833195798F + t2 * -0.000194934967F));
-  const float c =
-      1.0F - 0.5F * t2 + t2 * t2 * (0.0416666462F + t2 * (-0.00138873415F + t2 * 0.0000244358517F));
-  const bool across = quarter % 2 == 1;
-  const float cosine = across ? s : c;
-  const float sine = across ? c : s;
-  return {(quarter + 1) % 4 < 2 ? cosine : -cosine, quarter % 4 < 2 ? sine : -sine};
+/// For angles in [0, 4 pi], within 1e-6.
+[[nodiscard]] inline CosineSineLanes cosine_sine(const lanes::FloatLanes& turn_rad) noexcept {
+  using lanes::FloatLanes;
+  using lanes::IntLanes;
+  using lanes::splat;
+  const IntLanes quarter = lanes::to_int(turn_rad * splat(1.0F / kQuarterTurn) + splat(0.5F));
+  const FloatLanes t = turn_rad - lanes::to_float(quarter) * splat(kQuarterTurn);
+  const FloatLanes t2 = t * t;
+  const FloatLanes s =
+      t +
+      t * t2 * (splat(-0.166666502F) + t2 * (splat(0.00833195798F) + t2 * splat(-0.000194934967F)));
+  const FloatLanes c =
+      splat(1.0F) - splat(0.5F) * t2 +
+      t2 * t2 *
+          (splat(0.0416666462F) + t2 * (splat(-0.00138873415F) + t2 * splat(0.0000244358517F)));
+  const IntLanes is_even = (quarter & splat(1)) == splat(0);
+  const FloatLanes cosine = lanes::select(is_even, c, s);
+  const FloatLanes sine = lanes::select(is_even, s, c);
+  const IntLanes is_right = ((quarter + splat(1)) & splat(2)) == splat(0);
+  const IntLanes is_upper = (quarter & splat(2)) == splat(0);
+  return {lanes::select(is_right, cosine, lanes::negated(cosine)),
+          lanes::select(is_upper, sine, lanes::negated(sine))};
 }
 
 }  // namespace dseam::seam

@@ -150,27 +150,37 @@ template <typename Part>
   const IntLanes towards_zero = to_int(a);
   return towards_zero + (to_float(towards_zero) > a);  // A mask that is set counts as -1.
 }
+/// The same bits.
+[[gnu::always_inline, nodiscard]] inline FloatLanes as_floats(const IntLanes& a) noexcept {
+  FloatLanes floats;
+  std::memcpy(&floats, &a, sizeof floats);
+  return floats;
+}
+[[gnu::always_inline, nodiscard]] inline IntLanes as_ints(const FloatLanes& a) noexcept {
+  IntLanes ints;
+  std::memcpy(&ints, &a, sizeof ints);
+  return ints;
+}
 [[gnu::always_inline, nodiscard]] inline FloatLanes magnitude(const FloatLanes& a) noexcept {
-  IntLanes raw;
-  std::memcpy(&raw, &a, sizeof raw);
-  raw = raw & splat(0x7FFFFFFF);
-  FloatLanes positive;
-  std::memcpy(&positive, &raw, sizeof positive);
-  return positive;
+  return as_floats(as_ints(a) & splat(0x7FFFFFFF));
 }
 template <int kShift>
 [[gnu::always_inline, nodiscard]] inline IntLanes shift_left(const IntLanes& a) noexcept {
   return IntLanes::each([](auto p) { return p << kShift; }, a);
 }
+/// Also of zero, which the difference from zero is not.
+[[gnu::always_inline, nodiscard]] inline FloatLanes negated(const FloatLanes& a) noexcept {
+  return splat(-0.0F) - a;
+}
+/// Of what is not negative.
+template <int kShift>
+[[gnu::always_inline, nodiscard]] inline IntLanes shift_right(const IntLanes& a) noexcept {
+  return IntLanes::each([](auto p) { return p >> kShift; }, a);
+}
 /// `a` where the mask is set, else zero.
 [[gnu::always_inline, nodiscard]] inline FloatLanes keep(const IntLanes& mask,
                                                          const FloatLanes& a) noexcept {
-  IntLanes raw;
-  std::memcpy(&raw, &a, sizeof raw);
-  raw = raw & mask;
-  FloatLanes kept;
-  std::memcpy(&kept, &raw, sizeof kept);
-  return kept;
+  return as_floats(as_ints(a) & mask);
 }
 [[gnu::always_inline, nodiscard]] inline FloatLanes sqrt(const FloatLanes& a) noexcept {
 #if defined(__AVX__)
@@ -218,6 +228,24 @@ template <int kShift>
 
 [[gnu::always_inline, nodiscard]] inline float least(const FloatLanes& a) noexcept {
   return -largest(splat(0.0F) - a);
+}
+/// Each lane with all before it.
+[[gnu::always_inline, nodiscard]] inline IntLanes running_sum(IntLanes a) noexcept {
+#if defined(__AVX__)
+  const IntPart zero{};
+  a.low = a.low + __builtin_shufflevector(zero, a.low, 0, 8, 9, 10, 0, 12, 13, 14);
+  a.low = a.low + __builtin_shufflevector(zero, a.low, 0, 0, 8, 9, 0, 0, 12, 13);
+  a.low = a.low + __builtin_shufflevector(zero, a.low, 0, 0, 0, 0, 11, 11, 11, 11);
+#else
+  const auto in_part = [](IntPart p) {
+    const IntPart zero{};
+    p = p + __builtin_shufflevector(zero, p, 0, 4, 5, 6);
+    return p + __builtin_shufflevector(zero, p, 0, 0, 4, 5);
+  };
+  a.low = in_part(a.low);
+  a.high = in_part(a.high) + __builtin_shufflevector(a.low, a.low, 3, 3, 3, 3);
+#endif
+  return a;
 }
 /// A mask with lane `i` alone.
 [[gnu::always_inline, nodiscard]] inline IntLanes is_lane(std::size_t i) noexcept {
