@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "dseam/base/expects.hpp"
+#include "dseam/search/query_cell.hpp"
 
 namespace dseam::search {
 namespace {
@@ -16,17 +17,11 @@ struct IndexedBox {
   std::uint32_t first_index = kNoPoint;
 };
 
-// Cells are filled from the front, and so are nodes: what is unused lies at the end.
+// What is unused counts as the first, which is there; its index is greater than any other.
 IndexedBox box_of_cell(const Cell& cell) noexcept {
-  IndexedBox all;
-  for (std::size_t i = 0; i < kLanes && cell.index[i] != kNoPoint; ++i) {
-    Box& b = all.box;
-    b = {std::min(b.low_x, cell.x[i]),  std::min(b.low_y, cell.y[i]),
-         std::min(b.low_z, cell.z[i]),  std::max(b.high_x, cell.x[i]),
-         std::max(b.high_y, cell.y[i]), std::max(b.high_z, cell.z[i])};
-    all.first_index = std::min(all.first_index, cell.index[i]);
-  }
-  return all;
+  const QueryCell p(cell);
+  return {{least(p.x), least(p.y), least(p.z), largest(p.x), largest(p.y), largest(p.z)},
+          *std::min_element(cell.index, cell.index + kLanes)};
 }
 
 IndexedBox box_of_node(const Node& node) noexcept {
@@ -78,8 +73,6 @@ void CellTree::build_level(std::size_t level, std::size_t num_children) noexcept
   }
 }
 
-Box CellTree::box_of_block(std::uint32_t block) const noexcept {
-  return box_of_node(node_storage_[block]).box;
-}
+Box CellTree::box_of_only_block() const noexcept { return box_of_node(node_storage_[0]).box; }
 
 }  // namespace dseam::search

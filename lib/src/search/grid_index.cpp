@@ -18,6 +18,12 @@ bool is_in_range(geometry::Vec3f p) noexcept {
   return std::fabs(p.x) <= GridIndex::kMaxMm && std::fabs(p.y) <= GridIndex::kMaxMm &&
          std::fabs(p.z) <= GridIndex::kMaxMm;  // Written so that NaN fails it too.
 }
+bool are_in_range(const cloud::CloudView& cloud, std::size_t first) noexcept {
+  const FloatLanes most = splat(GridIndex::kMaxMm);
+  return bits((magnitude(lanes::load(&cloud.x[first])) <= most) &
+              (magnitude(lanes::load(&cloud.y[first])) <= most) &
+              (magnitude(lanes::load(&cloud.z[first])) <= most)) == 0xFFU;
+}
 
 // Keeps the nearest in a heap while more come than fit, and counts them all.
 class RadiusList {
@@ -77,12 +83,18 @@ GridIndex::Report GridIndex::rebuild(const cloud::CloudView& cloud) noexcept {
 
 GridIndex::Report GridIndex::collect(const cloud::CloudView& cloud) noexcept {
   Report report;
-  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-    if (!is_in_range(cloud[i])) {
+  for (std::uint32_t i = 0; i < cloud.size();) {
+    const bool eight =
+        i + kLanes <= std::min(cloud.size(), places_.size()) && are_in_range(cloud, i);
+    const std::uint32_t end = i + (eight ? static_cast<std::uint32_t>(kLanes) : 1U);
+    if (!eight && !is_in_range(cloud[i])) {
       ++report.dropped_out_of_range;
+      i = end;
     } else if (report.num_indexed == places_.size()) {
       ++report.dropped_full;
-    } else {
+      i = end;
+    }
+    for (; i < end; ++i) {
       places_[report.num_indexed++].index = i;
     }
   }

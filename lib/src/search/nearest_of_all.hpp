@@ -81,7 +81,7 @@ class NearestOfAll {
     }
     near_mm2_ = guess_mm2_;
     reach_mm2_ = kWiden * guess_mm2_;
-    return near_.collect(block, boxes, around, {near_mm2_, reach_mm2_});
+    return near_.collect(block, boxes, around, reach_mm2_);
   }
 
   [[nodiscard]] Group group_of(std::uint32_t at) const noexcept {

@@ -51,6 +51,9 @@ struct alignas(32) Node {
     high_y[lane] = box.high_y;
     high_z[lane] = box.high_z;
   }
+  [[nodiscard]] Box box(std::size_t lane) const noexcept {
+    return {low_x[lane], low_y[lane], low_z[lane], high_x[lane], high_y[lane], high_z[lane]};
+  }
 };
 
 /// The least box around two.
@@ -111,10 +114,7 @@ class CellTree {
     return cell_storage_.first(num_cells_);
   }
   [[nodiscard]] Box box_of(std::uint32_t cell) const noexcept {
-    const Node& n = node_storage_[cell / kLanes];
-    const std::size_t lane = cell % kLanes;
-    return {n.low_x[lane],  n.low_y[lane],  n.low_z[lane],
-            n.high_x[lane], n.high_y[lane], n.high_z[lane]};
+    return node_storage_[cell / kLanes].box(cell % kLanes);
   }
   /// Eight cells with one parent are a block, the last one of fewer.
   [[nodiscard]] std::uint32_t num_blocks() const noexcept {
@@ -133,7 +133,10 @@ class CellTree {
   [[nodiscard]] const Node& node_of(std::uint32_t block) const noexcept {
     return node_storage_[block];
   }
-  [[nodiscard]] Box box_of_block(std::uint32_t block) const noexcept;
+  [[nodiscard]] Box box_of_block(std::uint32_t block) const noexcept {
+    return num_levels_ > 1 ? node_storage_[level_begin_[1] + block / kLanes].box(block % kLanes)
+                           : box_of_only_block();
+  }
 
   /// Calls `visit(cell)` for every cell within `reach()` of `box`, at each step down the tree but
   /// the last the nearest first. `reach` may shrink meanwhile.
@@ -170,13 +173,19 @@ class CellTree {
   void visit_around(std::uint32_t start, const Box& box, const ReachOf& reach,
                     const Visit& visit) const noexcept {
     visit(start);
-    visit_up(0, start, box, reach, visit);
+    visit_up<0>(start, box, reach, visit);
   }
-  /// The same for all cells but those of a block.
+  /// Calls `visit(block)` for `start`, then for every other block, in the order of visit_around().
   template <typename ReachOf, typename Visit>
-  void visit_beyond(std::uint32_t block, const Box& box, const ReachOf& reach,
-                    const Visit& visit) const noexcept {
-    visit_up(1, block, box, reach, visit);
+  void visit_blocks_around(std::uint32_t start, const Box& box, const ReachOf& reach,
+                           const Visit& visit) const noexcept {
+    visit(start);
+    visit_up<1>(start, box, reach, visit);
+  }
+  /// One bit for each cell of a block that lies within reach.
+  [[nodiscard]] std::uint32_t near_cells(std::uint32_t block, const Box& box,
+                                         float squared_mm2) const noexcept {
+    return bits(squared_gaps(node_storage_[block], box) <= lanes::splat(squared_mm2));
   }
 
  private:
@@ -239,18 +248,19 @@ class CellTree {
     }
   }
 
-  template <typename ReachOf, typename Visit>
-  void visit_up(std::size_t level, std::uint32_t child, const Box& box, const ReachOf& reach,
+  // Of cells (kLevel 0) or blocks (kLevel 1) all but `child`.
+  template <std::size_t kLevel, typename ReachOf, typename Visit>
+  void visit_up(std::uint32_t child, const Box& box, const ReachOf& reach,
                 const Visit& visit) const noexcept {
-    for (; level < num_levels_; ++level) {
+    for (std::size_t level = kLevel; level < num_levels_; ++level) {
       const auto node = static_cast<std::uint32_t>(child / kLanes);
       const std::uint32_t others = near_children(level, node, box, reach());
-      descend(level, node, others & ~(1U << (child % kLanes)), box, reach, visit);
+      descend<kLevel>(level, node, others & ~(1U << (child % kLanes)), box, reach, visit);
       child = node;
     }
   }
 
-  template <typename ReachOf, typename Visit>
+  template <std::size_t kLevel, typename ReachOf, typename Visit>
   void descend(std::size_t top, std::uint32_t node, std::uint32_t children, const Box& box,
                const ReachOf& reach, const Visit& visit) const noexcept {
     std::array<Pending, kMaxLevels> pending;
@@ -264,7 +274,7 @@ class CellTree {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(at.children));
       at.children &= at.children - 1;
       const std::uint32_t child = at.node * static_cast<std::uint32_t>(kLanes) + lane;
-      if (level == 0) {
+      if (level == kLevel) {
         visit(child);
       } else {
         --level;
@@ -273,6 +283,7 @@ class CellTree {
     }
   }
 
+  [[nodiscard]] Box box_of_only_block() const noexcept;
   void build_level(std::size_t level, std::size_t num_children) noexcept;
 
   std::span<Cell> cell_storage_;

@@ -30,7 +30,7 @@ struct Neighbour {
 /// are ordered by index, so the answer is unique. What is not finite, or further than kMaxMm from
 /// the origin on an axis, is left out and counted.
 ///
-/// Memory:  about 40 bytes a point and 18 kB; the indexed points are copied.
+/// Memory:  about 40 bytes a point and 33 kB; the indexed points are copied.
 /// Time:    rebuild() is linear but for 10 more bits of grid where points crowd, at most 20 times;
 ///          queries visit only boxes that may hold an answer, whatever the points' distribution.
 /// Context: real-time safe; after rebuild() any number of threads may query single points, and one
@@ -87,7 +87,8 @@ class GridIndex {
 
   /// For stages that work on whole cells: for each one `work.start(cell)`, then
   /// `work.add(its points, near points)` once or more with what lies within `radius_mm` of the
-  /// cell's box, its own points first, always in the same order, then `work.finish(cell)`.
+  /// cell's box, its own points first, always in the same order and without indices, then
+  /// `work.finish(cell)`.
   template <typename Work>
   void for_each_cell(float radius_mm, Work& work) const noexcept;
 
@@ -118,14 +119,14 @@ void GridIndex::for_each_cell(float radius_mm, Work& work) const noexcept {
   const float squared_mm2 = radius_mm * radius_mm;
   NearPoints near = near_points();
   for (std::uint32_t block = 0; block < tree_.num_blocks(); ++block) {
-    const bool fits = near.collect(block, tree_.node_of(block), tree_.box_of_block(block),
-                                   {squared_mm2, squared_mm2});
+    const bool fits =
+        near.collect(block, tree_.node_of(block), tree_.box_of_block(block), squared_mm2);
     for (std::uint32_t at = CellTree::first_of(block); at < tree_.end_of(block); ++at) {
       const QueryCell query(tree_.cells()[at]);
       const auto add = [&](const NearView& points) noexcept { work.add(query, points); };
       work.start(at);
       if (fits) {
-        add(near.all_of(at, tree_.box_of(at), squared_mm2));
+        add(near.all_of<false>(at, tree_.box_of(at), squared_mm2));
       } else {
         near.in_parts(at, squared_mm2, add);
       }
@@ -141,11 +142,12 @@ std::uint32_t GridIndex::for_each_radius(float radius_mm, std::span<Neighbour> s
   std::uint32_t num_cut_short = 0;
   NearPoints near = near_points();
   for (std::uint32_t block = 0; block < tree_.num_blocks(); ++block) {
-    const bool fits = near.collect(block, tree_.node_of(block), tree_.box_of_block(block),
-                                   {squared_mm2, squared_mm2});
+    const bool fits =
+        near.collect(block, tree_.node_of(block), tree_.box_of_block(block), squared_mm2);
     for (std::uint32_t at = CellTree::first_of(block); at < tree_.end_of(block); ++at) {
       const Cell& cell = tree_.cells()[at];
-      const NearView points = fits ? near.all_of(at, tree_.box_of(at), squared_mm2) : NearView{};
+      const NearView points =
+          fits ? near.all_of<true>(at, tree_.box_of(at), squared_mm2) : NearView{};
       for (std::size_t i = 0; i < kLanes && cell.index[i] != kNoPoint; ++i) {
         const std::size_t count = fits ? others_in(points, at, i, squared_mm2, scratch)
                                        : others_within(at, i, squared_mm2, scratch);

@@ -101,32 +101,21 @@ struct Ring {
   float upto_mm2;
 };
 
-/// The cells around the eight cells of a lowest node of the tree, found once for all of them, and
-/// for each of the eight the points of those that lie around it.
+/// The blocks of the tree around one of them, found once for its eight cells, and for each of the
+/// eight the points that lie around it.
 ///
-/// Memory:  18 kB, lent.
+/// Memory:  33 kB, lent.
 class NearPoints {
  public:
-  static constexpr std::size_t kMostCells = 128;
-  static constexpr std::size_t kCapacity = kMostCells * kLanes;
+  static constexpr std::size_t kMostBlocks = 32;  ///< A bit each of an integer.
+  static constexpr std::size_t kCapacity = kMostBlocks * kLanes * kLanes;
 
-  /// Squared distances from the boxes of the eight.
-  struct Reaches {
-    float near_mm2;
-    float far_mm2;
-  };
-  /// Which of the cells that were found lie around one of the eight: a bit each.
-  struct CellSet {
-    std::uint64_t words[kMostCells / 64];
-  };
   struct Memory {
     alignas(32) float x[kCapacity + kLanes];
     alignas(32) float y[kCapacity + kLanes];
     alignas(32) float z[kCapacity + kLanes];
     alignas(32) std::uint32_t index[kCapacity + kLanes];
-    std::uint32_t cells[kMostCells];
-    CellSet near[kLanes];
-    CellSet far[kLanes];
+    std::uint32_t blocks[kMostBlocks];
   };
 
   NearPoints(const CellTree& tree, Memory& memory) noexcept
@@ -134,16 +123,17 @@ class NearPoints {
         memory_(memory),
         of_cell_(memory.x, memory.y, memory.z, memory.index, kCapacity) {}
 
-  /// Finds the cells within reach of `boxes`, one for each cell of `block`, all of them in
+  /// Finds the blocks within reach of `boxes`, one for each cell of `block`, all of them in
   /// `around`. False when they are too many.
   [[nodiscard]] bool collect(std::uint32_t block, const Node& boxes, const Box& around,
-                             Reaches reaches) noexcept;
+                             float squared_mm2) noexcept;
 
   /// Of what was collected the points around the box of cell `at` of that block, but its own;
-  /// `ring` ends where one of the reaches does. With their indices, or without.
+  /// `ring` ends within the reach. With their indices, or without.
   template <bool kIndices>
   [[nodiscard]] NearView others_of(std::uint32_t at, const Box& box, Ring ring) noexcept;
-  /// The points within the far reach, with the cell's own, which come first.
+  /// The points within the reach, with the cell's own, which come first.
+  template <bool kIndices>
   [[nodiscard]] NearView all_of(std::uint32_t at, const Box& box, float squared_mm2) noexcept;
 
   /// The points of other cells around a box of points of cell `at`, whatever was collected. None
@@ -167,26 +157,19 @@ class NearPoints {
       of_cell_.append(points, bits(gaps.squared_mm2(points) <= limit));
     };
     of_cell_.clear();
-    take(at);
-    const std::uint32_t block = CellTree::block_of(at);
-    for (std::uint32_t cell = tree_.first_of(block); cell < tree_.end_of(block); ++cell) {
-      if (cell != at) {
-        take(cell);
-      }
-    }
-    tree_.visit_beyond(
-        block, box, [squared_mm2]() noexcept { return Reach{squared_mm2}; }, take);
+    tree_.visit_around(
+        at, box, [squared_mm2]() noexcept { return Reach{squared_mm2}; }, take);
     add(of_cell_.view());
   }
 
  private:
   template <bool kIndices>
-  void take(const CellSet& set, std::uint64_t but, const BoxGaps& gaps, Ring ring) noexcept;
+  void take_others(std::uint32_t at, const Box& box, Ring ring) noexcept;
 
   const CellTree& tree_;
   Memory& memory_;
   PointList of_cell_;
-  float near_mm2_ = 0.0F;
+  IntLanes blocks_of_ = lanes::splat(0);  ///< For each of the eight which blocks lie around it.
 };
 
 }  // namespace dseam::search
