@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "dseam/base/lanes.hpp"
@@ -24,25 +25,61 @@ constexpr std::size_t kDigits = 3;
 constexpr std::uint32_t kBitsPerDigit = kBitsPerAxis;
 constexpr std::uint32_t kPlacesPerDigit = 1U << kBitsPerDigit;
 static_assert(kCurveCounters == kDigits * kPlacesPerDigit);
-constexpr std::size_t kSmallRun = 96;  // Below this an insertion sort beats clearing the counters.
+constexpr std::size_t kSmallRun = 192;  // Below this ranking beats clearing the counters.
+constexpr std::size_t kFew = 32;
 
 struct Grid {
   geometry::Vec3f low;
   float cells_per_mm;  // 0 when all points are identical.
 };
 
-Grid grid_over(const cloud::CloudView& cloud, std::span<const CurvePlace> places) noexcept {
-  geometry::Vec3f low = cloud[places.front().index];
-  geometry::Vec3f high = low;
-  for (const CurvePlace& place : places) {
-    const geometry::Vec3f p = cloud[place.index];
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+struct EightPoints {
+  FloatLanes x, y, z;
+};
+
+template <bool kAll>
+EightPoints pick_eight(const cloud::CloudView& cloud, std::span<const CurvePlace> places) noexcept {
+  alignas(32) float x[kLanes];
+  alignas(32) float y[kLanes];
+  alignas(32) float z[kLanes];
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const std::size_t index = places[kAll ? i : std::min(i, places.size() - 1)].index;
+    x[i] = cloud.x[index];
+    y[i] = cloud.y[index];
+    z[i] = cloud.z[index];
   }
-  const float extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  return {load(x), load(y), load(z)};
+}
+
+// The first eight of `places`, the last of fewer repeated. Points that lie in the cloud side by
+// side, as all do before the first sort, are not picked one by one.
+EightPoints eight_at(const cloud::CloudView& cloud, std::span<const CurvePlace> places) noexcept {
+  if (places.size() < kLanes) {
+    return pick_eight<false>(cloud, places);
+  }
+  const std::size_t first = places[0].index;
+  const bool side_by_side = places[kLanes - 1].index - first == kLanes - 1;
+  return side_by_side
+             ? EightPoints{load(&cloud.x[first]), load(&cloud.y[first]), load(&cloud.z[first])}
+             : pick_eight<true>(cloud, places);
+}
+
+// `eight_from(i)` has the points from place `i` on.
+template <typename EightFrom>
+Grid grid_over(std::size_t size, const EightFrom& eight_from) noexcept {
+  EightPoints low = eight_from(0);
+  EightPoints high = low;
+  for (std::size_t i = kLanes; i < size; i += kLanes) {
+    const EightPoints p = eight_from(i);
+    low = {min(low.x, p.x), min(low.y, p.y), min(low.z, p.z)};
+    high = {max(high.x, p.x), max(high.y, p.y), max(high.z, p.z)};
+  }
+  const geometry::Vec3f corner{least(low.x), least(low.y), least(low.z)};
+  const float extent = std::max(
+      {largest(high.x) - corner.x, largest(high.y) - corner.y, largest(high.z) - corner.z});
   // An extent so small that its inverse overflows is as good as none.
   const bool is_point = !(extent > kLastCell * 1.0e-37F);
-  return {low, is_point ? 0.0F : kLastCell / extent};
+  return {corner, is_point ? 0.0F : kLastCell / extent};
 }
 
 struct Axes {
@@ -76,8 +113,12 @@ template <int... kBelowTop>
   (undo<(kTop >> kBelowTop)>(a), ...);
   a.y = a.y ^ a.x;
   a.z = a.z ^ a.y;
-  IntLanes gray = splat(0);
-  ((gray = gray ^ (is_set(a.z, kTop >> kBelowTop) & splat((kTop >> kBelowTop) - 1))), ...);
+  // A bit of this is set where an odd number of those above it are in z.
+  IntLanes gray = shift_right<1>(a.z);
+  gray = gray ^ shift_right<1>(gray);
+  gray = gray ^ shift_right<2>(gray);
+  gray = gray ^ shift_right<4>(gray);
+  gray = gray ^ shift_right<8>(gray);
   return {a.x ^ gray, a.y ^ gray, a.z ^ gray};
 }
 Axes to_hilbert(const Axes& a) noexcept {
@@ -92,48 +133,41 @@ IntLanes spread(IntLanes a) noexcept {
   return (a | shift_left<2>(a)) & splat(0x09249249);
 }
 
-IntLanes cell_of(const float* coordinate, float low, float cells_per_mm) noexcept {
-  const FloatLanes scaled = (load(coordinate) - splat(low)) * splat(cells_per_mm);
+IntLanes cell_of(const FloatLanes& coordinate, float low, float cells_per_mm) noexcept {
+  const FloatLanes scaled = (coordinate - splat(low)) * splat(cells_per_mm);
   return to_int(min(scaled, splat(kLastCell)));
 }
 
-// `to` may be where `places` are.
-void key_eight(const cloud::CloudView& cloud, const Grid& grid, std::span<const CurvePlace> places,
-               CurvePlace* to) noexcept {
-  alignas(32) float x[kLanes];
-  alignas(32) float y[kLanes];
-  alignas(32) float z[kLanes];
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    const std::size_t index = places[std::min(i, places.size() - 1)].index;
-    x[i] = cloud.x[index];
-    y[i] = cloud.y[index];
-    z[i] = cloud.z[index];
-  }
-  const Axes axes = to_hilbert({cell_of(x, grid.low.x, grid.cells_per_mm),
-                                cell_of(y, grid.low.y, grid.cells_per_mm),
-                                cell_of(z, grid.low.z, grid.cells_per_mm)});
-  alignas(32) std::int32_t keys[kLanes];
-  store(shift_left<2>(spread(axes.x)) | shift_left<1>(spread(axes.y)) | spread(axes.z), keys);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    to[i] = {static_cast<std::uint32_t>(keys[i]), places[i].index};
-  }
+IntLanes keys_of(const Grid& grid, const EightPoints& p) noexcept {
+  const Axes axes = to_hilbert({cell_of(p.x, grid.low.x, grid.cells_per_mm),
+                                cell_of(p.y, grid.low.y, grid.cells_per_mm),
+                                cell_of(p.z, grid.low.z, grid.cells_per_mm)});
+  return shift_left<2>(spread(axes.x)) | shift_left<1>(spread(axes.y)) | spread(axes.z);
 }
 
-void key_all(const cloud::CloudView& cloud, const Grid& grid, std::span<const CurvePlace> places,
-             CurvePlace* to) noexcept {
-  for (std::size_t i = 0; i < places.size(); i += kLanes) {
-    key_eight(cloud, grid, places.subspan(i, std::min(kLanes, places.size() - i)), to + i);
+// Each to where as many lie before it as have lesser keys: eight at a time, and for few fewer steps
+// than a sort takes, the same ones whatever the keys.
+void sort_by_rank(std::span<const CurvePlace> from, CurvePlace* to) noexcept {
+  alignas(32) std::int32_t keys[kSmallRun + kLanes];
+  alignas(32) std::int32_t ranks[kSmallRun + kLanes];
+  std::uint8_t equal_before[kSmallRun];
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    keys[i] = static_cast<std::int32_t>(from[i].key);
   }
-}
-
-void insertion_sort(std::span<CurvePlace> places) noexcept {
-  for (std::size_t i = 1; i < places.size(); ++i) {
-    const CurvePlace moved = places[i];
-    std::size_t to = i;
-    for (; to > 0 && places[to - 1].key > moved.key; --to) {
-      places[to] = places[to - 1];
+  std::fill_n(keys + from.size(), kLanes, std::numeric_limits<std::int32_t>::max());
+  for (std::size_t i = 0; i < from.size(); i += kLanes) {
+    const IntLanes own = load(&keys[i]);
+    const auto is_less = [&](std::size_t j) noexcept { return splat(keys[j]) < own; };
+    IntLanes rank = splat(0);  // A mask that is set counts as -1.
+    for (std::size_t j = 0; j < from.size(); j += 4) {
+      rank = rank - is_less(j) - is_less(j + 1) - is_less(j + 2) - is_less(j + 3);
     }
-    places[to] = moved;
+    store(rank, &ranks[i]);
+  }
+  std::fill_n(equal_before, from.size(), std::uint8_t{0});
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const auto rank = static_cast<std::size_t>(ranks[i]);
+    to[rank + equal_before[rank]++] = from[i];
   }
 }
 
@@ -168,21 +202,53 @@ void radix_sort(std::span<CurvePlace> from, std::span<CurvePlace> to,
   }
 }
 
-void sort_over_grid(const cloud::CloudView& cloud, const Grid& grid, std::span<CurvePlace> places,
-                    std::span<CurvePlace> spare, std::span<std::uint32_t> counters) noexcept {
-  if (places.size() <= kSmallRun) {
-    key_all(cloud, grid, places, places.data());
-    insertion_sort(places);
-  } else {
-    key_all(cloud, grid, places, spare.data());
-    radix_sort(spare.first(places.size()), places, counters);
+// False when all points are identical.
+template <typename EightFrom>
+bool sort_over_grid(std::span<CurvePlace> places, std::span<CurvePlace> spare,
+                    std::span<std::uint32_t> counters, const EightFrom& eight_from) noexcept {
+  const Grid grid = grid_over(places.size(), eight_from);
+  if (!(grid.cells_per_mm > 0.0F)) {
+    return false;
   }
+  spare = spare.first(places.size());
+  for (std::size_t i = 0; i < places.size(); i += kLanes) {
+    alignas(32) std::int32_t keys[kLanes];
+    store(keys_of(grid, eight_from(i)), keys);
+    for (std::size_t j = 0; j < std::min(kLanes, places.size() - i); ++j) {
+      spare[i + j] = {static_cast<std::uint32_t>(keys[j]), places[i + j].index};
+    }
+  }
+  if (places.size() <= kSmallRun) {
+    sort_by_rank(spare, places.data());
+  } else {
+    radix_sort(spare, places, counters);
+  }
+  return true;
 }
 
-std::size_t run_length(std::span<const CurvePlace> places) noexcept {
+bool sort_over_own_grid(const cloud::CloudView& cloud, std::span<CurvePlace> places,
+                        std::span<CurvePlace> spare, std::span<std::uint32_t> counters) noexcept {
+  const auto from_cloud = [&](std::size_t i) noexcept {
+    return eight_at(cloud, places.subspan(i));
+  };
+  if (places.size() > kFew) {
+    return sort_over_grid(places, spare, counters, from_cloud);
+  }
+  std::array<EightPoints, kFew / kLanes> picked{};  // Once for the grid and the keys.
+  for (std::size_t i = 0; i < places.size(); i += kLanes) {
+    picked[i / kLanes] = from_cloud(i);
+  }
+  return sort_over_grid(places, spare, counters,
+                        [&](std::size_t i) noexcept { return picked[i / kLanes]; });
+}
+
+// How many places the first key has, when they are more than `few`; else 1.
+std::size_t crowd_at(std::span<const CurvePlace> places, std::size_t few) noexcept {
   std::size_t length = 1;
-  while (length < places.size() && places[length].key == places[0].key) {
-    ++length;
+  if (places.size() > few && places[few].key == places[0].key) {
+    for (length = few + 1; length < places.size() && places[length].key == places[0].key;) {
+      ++length;
+    }
   }
   return length;
 }
@@ -195,8 +261,8 @@ void sort_along_curve(const cloud::CloudView& cloud, std::size_t max_in_cell,
   if (places.empty()) {
     return;
   }
-  sort_over_grid(cloud, grid_over(cloud, places), places, spare, counters);
-  // Ends of the runs being refined, innermost last; a run's own runs are looked at next.
+  sort_over_own_grid(cloud, places, spare, counters);
+  // Ends of the crowds being refined, innermost last; a crowd's own crowds are looked at next.
   std::array<std::size_t, kMaxRefinements> ends;
   std::size_t depth = 0;
   ends[0] = places.size();
@@ -205,11 +271,9 @@ void sort_along_curve(const cloud::CloudView& cloud, std::size_t max_in_cell,
       --depth;
     }
     const std::span<CurvePlace> rest = places.subspan(at, ends[depth] - at);
-    const std::span<CurvePlace> run = rest.first(run_length(rest));
-    const bool crowded = run.size() > max_in_cell && depth + 1 < kMaxRefinements;
-    const Grid grid = crowded ? grid_over(cloud, run) : Grid{};
-    if (grid.cells_per_mm > 0.0F) {
-      sort_over_grid(cloud, grid, run, spare, counters);
+    const std::span<CurvePlace> run = rest.first(crowd_at(rest, max_in_cell));
+    const bool crowded = run.size() > 1 && depth + 1 < kMaxRefinements;
+    if (crowded && sort_over_own_grid(cloud, run, spare, counters)) {
       ends[++depth] = at + run.size();
     } else {
       at += run.size();

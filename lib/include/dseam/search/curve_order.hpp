@@ -21,7 +21,7 @@ inline constexpr std::size_t kCurveCounters = 3 * 1024;
 /// Cells that hold more than `max_in_cell` points are sorted again over a grid of their own, and so
 /// on, until they are small or their points are identical: an outlier coarsens nothing.
 ///
-/// Shape:   every index in bounds and its point finite; `spare` as long as `places`;
+/// Shape:   indices rising, in bounds and of finite points; `spare` as long as `places`;
 ///          `counters` of kCurveCounters. Identical points keep their order.
 /// Time:    linear for each refinement; a float has room for 20 of them.
 /// Source:  J. Skilling, "Programming the Hilbert curve", AIP Conf. Proc. 707 (2004).
