@@ -19,16 +19,19 @@ IntLanes is_same(const std::uint32_t* cell) noexcept {
 
 }  // namespace
 
-// All three at once: each waits for its sum.
 void CellRuns::sum_up() noexcept {
-  std::uint32_t x = 0;
-  std::uint32_t y = 0;
-  std::uint32_t z = 0;
+  IntLanes x = lanes::splat(0);
+  IntLanes y = x;
+  IntLanes z = x;
+  const auto add_eight = [](std::uint32_t* steps, const IntLanes& before) noexcept {
+    lanes::store(before + lanes::running_sum(lanes::load_lanes<IntLanes>(steps)), steps);
+    return lanes::splat(static_cast<std::int32_t>(steps[kLanes - 1]));
+  };
   x_.steps[0] = y_.steps[0] = z_.steps[0] = 0;
-  for (std::size_t i = 1; i <= size_; ++i) {
-    x_.steps[i] = x += x_.steps[i];
-    y_.steps[i] = y += y_.steps[i];
-    z_.steps[i] = z += z_.steps[i];
+  for (std::size_t i = 1; i <= size_; i += kLanes) {  // All three at once: each waits for its sum.
+    x = add_eight(x_.steps + i, x);
+    y = add_eight(y_.steps + i, y);
+    z = add_eight(z_.steps + i, z);
   }
 }
 

@@ -154,7 +154,9 @@ void FrameFuser::fuse_row(const Frame& frame, std::uint32_t v, VoxelMap& map,
     const FloatLanes pz = base(t.row_z, t.translation_mm.z);
     const std::uint32_t inside = lanes::bits(frame.box.contains(px, py, pz)) & usable;
     report.dropped_outside += count_of(usable & ~inside);
-    map.insert_eight(px, py, pz, inside, frame.seen_by, report.map);
+    if (inside != 0) {
+      map.insert_eight(px, py, pz, inside, frame.seen_by, report.map);
+    }
   }
 }
 

@@ -10,38 +10,31 @@
 namespace dseam::cloud {
 namespace {
 
-using lanes::FloatLanes;
-using lanes::IntLanes;
 using lanes::kLanes;
-using lanes::splat;
 using search::CellKey;
 using search::VoxelHash;
 
-constexpr float kMaxAxis = static_cast<float>(CellKey::kMaxAxis);
-constexpr float kStepsPerCell = static_cast<float>(1 << 20);
+// The axes of a cell go through the same arithmetic side by side; the fourth place is idle.
+typedef double Axes __attribute__((vector_size(32)));
+typedef std::uint64_t AxisWords __attribute__((vector_size(32)));
+
+// Of whole numbers under 2^52, as those in the low bits of 2^52: exact, and no processor lacks it.
+[[gnu::always_inline]] inline Axes to_doubles(const AxisWords& whole) noexcept {
+  constexpr double kBase = 4503599627370496.0;
+  return reinterpret_cast<Axes>(whole | std::bit_cast<std::uint64_t>(kBase)) - kBase;
+}
+
+[[gnu::always_inline]] inline AxisWords cells_of(CellKey key) noexcept {
+  constexpr AxisWords kShifts = {0, CellKey::kAxisBits, 2 * CellKey::kAxisBits, 0};
+  const AxisWords keys = {key.bits, key.bits, key.bits, 0};
+  return (keys >> kShifts) & ((std::uint64_t{1} << CellKey::kAxisBits) - 1);
+}
 
 bool is_finite(geometry::Vec3f p) noexcept {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
 bool is_sensible(float cell_mm) noexcept { return cell_mm >= 1.0e-3F && cell_mm <= 1.0e6F; }
-
-[[gnu::always_inline]] inline FloatLanes lattice(const FloatLanes& coordinate, float origin_mm,
-                                                 float cells_per_mm) noexcept {
-  return (coordinate - splat(origin_mm)) * splat(cells_per_mm);
-}
-
-// What is out of range counts as 0 until it is dropped; no other value reaches an integer.
-[[gnu::always_inline]] inline CellRuns::Axis split(const FloatLanes& lattice,
-                                                   const IntLanes& in_range) noexcept {
-  const FloatLanes safe = lanes::keep(in_range, lattice);
-  const IntLanes cell = lanes::floor_to_int(safe);
-  return {cell, lanes::to_int((safe - lanes::to_float(cell)) * splat(kStepsPerCell))};
-}
-
-[[gnu::always_inline]] inline IntLanes in_range(const FloatLanes& lattice) noexcept {
-  return lanes::magnitude(lattice) < splat(kMaxAxis);  // False for what is not a number.
-}
 
 }  // namespace
 
@@ -108,20 +101,6 @@ VoxelMap::Report VoxelMap::insert(const CloudView& cloud, std::size_t view) noex
   return report;
 }
 
-void VoxelMap::insert_eight(const FloatLanes& x, const FloatLanes& y, const FloatLanes& z,
-                            std::uint32_t valid, ViewMask seen_by, Report& report) noexcept {
-  const FloatLanes lx = lattice(x, config_.origin_mm.x, cells_per_mm_);
-  const FloatLanes ly = lattice(y, config_.origin_mm.y, cells_per_mm_);
-  const FloatLanes lz = lattice(z, config_.origin_mm.z, cells_per_mm_);
-  const IntLanes usable = in_range(lx) & in_range(ly) & in_range(lz);
-  const std::uint32_t left = valid & lanes::bits(usable);
-  report.dropped_out_of_range += static_cast<std::uint32_t>(std::popcount(valid ^ left));
-  if (!runs_[0].has_room()) {
-    flush(seen_by, report);
-  }
-  runs_[0].append(split(lx, usable), split(ly, usable), split(lz, usable), left);
-}
-
 void VoxelMap::flush(ViewMask seen_by, Report& report) noexcept {
   CellRuns& runs = runs_[0];
   const std::size_t count = runs.cut();
@@ -153,21 +132,18 @@ void VoxelMap::flush(ViewMask seen_by, Report& report) noexcept {
 
 FusedCloudView VoxelMap::view() noexcept {
   const double step_mm = static_cast<double>(config_.cell_mm) / static_cast<double>(kStepsPerCell);
-  const auto centre = [&](std::uint64_t sum, std::uint32_t count, std::int32_t cell,
-                          float origin_mm) noexcept {
-    // Signed, since that is one instruction: no sum reaches 2^63.
-    const double steps = static_cast<double>(static_cast<std::int64_t>(sum));
-    const double inside_mm = steps / static_cast<double>(count) * step_mm;
-    const double cell_mm = static_cast<double>(cell) * static_cast<double>(config_.cell_mm);
-    return static_cast<float>(static_cast<double>(origin_mm) + cell_mm + inside_mm);
-  };
+  const geometry::Vec3f& origin = config_.origin_mm;
+  const Axes origin_mm = {static_cast<double>(origin.x), static_cast<double>(origin.y),
+                          static_cast<double>(origin.z), 0.0};
   centroids_.resize(size());
   for (std::size_t i = 0; i < size(); ++i) {
     const Sum& sum = sums_[i];
-    const CellKey key = hash_.keys()[i];
-    centroids_.set(i, {centre(sum.x, sum.count, key.x(), config_.origin_mm.x),
-                       centre(sum.y, sum.count, key.y(), config_.origin_mm.y),
-                       centre(sum.z, sum.count, key.z(), config_.origin_mm.z)});
+    const Axes cell = to_doubles(cells_of(hash_.keys()[i])) - static_cast<double>(kMaxAxis);
+    const AxisWords steps = {sum.x, sum.y, sum.z, 0};
+    const Axes inside_mm = to_doubles(steps) / static_cast<double>(sum.count) * step_mm;
+    const Axes mm = origin_mm + cell * static_cast<double>(config_.cell_mm) + inside_mm;
+    centroids_.set(
+        i, {static_cast<float>(mm[0]), static_cast<float>(mm[1]), static_cast<float>(mm[2])});
     count_[i] = sum.count;
     seen_by_[i] = sum.seen_by;
   }

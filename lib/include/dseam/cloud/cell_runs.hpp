@@ -26,17 +26,17 @@ class CellRuns {
   };
 
   [[nodiscard]] bool has_room() const noexcept { return size_ + lanes::kLanes <= kCapacity; }
-  /// Those whose bit is set.
+  /// Those whose bit is set; mostly all are, which needs no packing.
   [[gnu::always_inline]] void append(const Axis& x, const Axis& y, const Axis& z,
                                      std::uint32_t valid) noexcept {
-    const lanes::LanePacker packer(valid);
-    const std::size_t to = size_ + 1;
-    packer.store(x.cell, x_.cell + to);
-    packer.store(y.cell, y_.cell + to);
-    packer.store(z.cell, z_.cell + to);
-    packer.store(x.step, x_.steps + to);
-    packer.store(y.step, y_.steps + to);
-    packer.store(z.step, z_.steps + to);
+    if (valid == 0xFFU) {
+      store(x, y, z,
+            [](const lanes::IntLanes& from, std::uint32_t* to) { lanes::store(from, to); });
+    } else {
+      const lanes::LanePacker packer(valid);
+      store(x, y, z,
+            [&](const lanes::IntLanes& from, std::uint32_t* to) { packer.store(from, to); });
+    }
     size_ += static_cast<std::size_t>(std::popcount(valid));
   }
   /// Finds the runs of what was appended; returns how many.
@@ -66,12 +66,22 @@ class CellRuns {
 
  private:
   static constexpr std::size_t kRoom = 1 + kCapacity + lanes::kLanes;
-  // Place 0 lies before the first point. Sums may wrap: the difference of two of them does not,
-  // since 512 points have at most 2^29 steps.
+  // Place 0 lies before the first point. No sum overflows: 512 points have at most 2^29 steps.
   struct Points {
     std::uint32_t cell[kRoom];
     std::uint32_t steps[kRoom];
   };
+  template <typename Store>
+  [[gnu::always_inline]] void store(const Axis& x, const Axis& y, const Axis& z,
+                                    const Store& store_at) noexcept {
+    const std::size_t to = size_ + 1;
+    store_at(x.cell, x_.cell + to);
+    store_at(y.cell, y_.cell + to);
+    store_at(z.cell, z_.cell + to);
+    store_at(x.step, x_.steps + to);
+    store_at(y.step, y_.steps + to);
+    store_at(z.step, z_.steps + to);
+  }
   void sum_up() noexcept;
   [[nodiscard]] std::uint32_t sum(const Points& axis, std::size_t run) const noexcept {
     return axis.steps[begin_[run + 1]] - axis.steps[begin_[run]];

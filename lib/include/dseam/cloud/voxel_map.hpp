@@ -66,12 +66,41 @@ class VoxelMap {
 
   /// For stages that make points eight at a time: adds those whose bit is set in `valid`. They may
   /// wait until flush(), which must come before another view and before the map is asked.
-  void insert_eight(const lanes::FloatLanes& x, const lanes::FloatLanes& y,
-                    const lanes::FloatLanes& z, std::uint32_t valid, ViewMask seen_by,
-                    Report& report) noexcept;
+  [[gnu::always_inline]] void insert_eight(const lanes::FloatLanes& x, const lanes::FloatLanes& y,
+                                           const lanes::FloatLanes& z, std::uint32_t valid,
+                                           ViewMask seen_by, Report& report) noexcept {
+    using lanes::FloatLanes;
+    using lanes::splat;
+    const FloatLanes per_mm = splat(cells_per_mm_);
+    const FloatLanes lx = (x - splat(config_.origin_mm.x)) * per_mm;
+    const FloatLanes ly = (y - splat(config_.origin_mm.y)) * per_mm;
+    const FloatLanes lz = (z - splat(config_.origin_mm.z)) * per_mm;
+    const lanes::IntLanes usable = in_range(lx) & in_range(ly) & in_range(lz);
+    const std::uint32_t left = valid & lanes::bits(usable);
+    report.dropped_out_of_range += static_cast<std::uint32_t>(std::popcount(valid ^ left));
+    if (!runs_[0].has_room()) {
+      flush(seen_by, report);
+    }
+    runs_[0].append(split(lx, usable), split(ly, usable), split(lz, usable), left);
+  }
   void flush(ViewMask seen_by, Report& report) noexcept;
 
  private:
+  static constexpr float kMaxAxis = static_cast<float>(search::CellKey::kMaxAxis);
+  static constexpr float kStepsPerCell = static_cast<float>(1 << 20);
+
+  /// False for what is not a number.
+  [[nodiscard]] static lanes::IntLanes in_range(const lanes::FloatLanes& lattice) noexcept {
+    return lanes::magnitude(lattice) < lanes::splat(kMaxAxis);
+  }
+  /// What is out of range counts as 0 until it is dropped; no other value reaches an integer.
+  [[nodiscard]] static CellRuns::Axis split(const lanes::FloatLanes& lattice,
+                                            const lanes::IntLanes& in_range) noexcept {
+    const lanes::FloatLanes safe = lanes::keep(in_range, lattice);
+    const lanes::IntLanes cell = lanes::floor_to_int(safe);
+    return {cell, lanes::to_int((safe - lanes::to_float(cell)) * lanes::splat(kStepsPerCell))};
+  }
+
   struct Sum {
     std::uint64_t x;
     std::uint64_t y;

@@ -15,6 +15,7 @@ namespace dseam::search {
 struct CellKey {
   std::uint64_t bits = 0;
 
+  static constexpr std::uint32_t kAxisBits = 21;     ///< Of each axis + kMaxAxis; x is lowest.
   static constexpr std::int32_t kMaxAxis = 1 << 20;  ///< Axes lie in [-kMaxAxis, kMaxAxis).
   /// The axes must be in range.
   [[nodiscard]] static constexpr CellKey of(std::int32_t x, std::int32_t y,
