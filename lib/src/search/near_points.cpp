@@ -41,27 +41,38 @@ bool NearPoints::collect(std::uint32_t block, const Node& boxes, const Box& arou
   return reach.squared_mm2 != kNever;
 }
 
+// The cells first, then their points: one loop in another would end where nobody can foresee it.
+std::size_t NearPoints::find_cells(std::uint32_t at, const Box& box, float squared_mm2) noexcept {
+  constexpr std::int32_t kNumbers[kLanes] = {0, 1, 2, 3, 4, 5, 6, 7};
+  std::size_t count = 0;
+  auto blocks = static_cast<std::uint32_t>(blocks_of_[at % kLanes]);
+  for (; blocks != 0; blocks &= blocks - 1) {
+    const std::uint32_t block = memory_.blocks[std::countr_zero(blocks)];
+    const std::uint32_t own = block == CellTree::block_of(at) ? 1U << (at % kLanes) : 0U;
+    const std::uint32_t near = tree_.near_cells(block, box, squared_mm2) & ~own;
+    const IntLanes cells =
+        lanes::load(kNumbers) + lanes::splat(static_cast<std::int32_t>(CellTree::first_of(block)));
+    lanes::LanePacker(near).store(cells, memory_.cells + count);
+    count += static_cast<std::size_t>(std::popcount(near));
+  }
+  return count;
+}
+
 template <bool kIndices>
 void NearPoints::take_others(std::uint32_t at, const Box& box, Ring ring) noexcept {
   const BoxGaps gaps(box);
   const FloatLanes above = lanes::splat(ring.above_mm2);
   const FloatLanes upto = lanes::splat(ring.upto_mm2);
+  const std::size_t count = find_cells(at, box, ring.upto_mm2);
   PointList list = of_cell_;  // In registers.
-  auto blocks = static_cast<std::uint32_t>(blocks_of_[at % kLanes]);
-  for (; blocks != 0; blocks &= blocks - 1) {
-    const std::uint32_t block = memory_.blocks[std::countr_zero(blocks)];
-    const std::uint32_t own = block == CellTree::block_of(at) ? 1U << (at % kLanes) : 0U;
-    std::uint32_t left = tree_.near_cells(block, box, ring.upto_mm2) & ~own;
-    const Cell* cells = &tree_.cells()[CellTree::first_of(block)];
-    for (; left != 0; left &= left - 1) {
-      const EightPoints eight = EightPoints::of(cells[std::countr_zero(left)]);
-      const FloatLanes squared = gaps.squared_mm2(eight);
-      const std::uint32_t wanted = bits((above < squared) & (squared <= upto));
-      if constexpr (kIndices) {
-        list.append(eight, wanted);
-      } else {
-        list.append_places(eight, wanted);
-      }
+  for (std::size_t i = 0; i < count; ++i) {
+    const EightPoints eight = EightPoints::of(tree_.cells()[memory_.cells[i]]);
+    const FloatLanes squared = gaps.squared_mm2(eight);
+    const std::uint32_t wanted = bits((above < squared) & (squared <= upto));
+    if constexpr (kIndices) {
+      list.append(eight, wanted);
+    } else {
+      list.append_places(eight, wanted);
     }
   }
   of_cell_ = list;

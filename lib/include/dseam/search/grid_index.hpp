@@ -30,7 +30,7 @@ struct Neighbour {
 /// are ordered by index, so the answer is unique. What is not finite, or further than kMaxMm from
 /// the origin on an axis, is left out and counted.
 ///
-/// Memory:  about 40 bytes a point and 33 kB; the indexed points are copied.
+/// Memory:  about 40 bytes a point and 34 kB; the indexed points are copied.
 /// Time:    rebuild() is linear but for 10 more bits of grid where points crowd, at most 20 times;
 ///          queries visit only boxes that may hold an answer, whatever the points' distribution.
 /// Context: real-time safe; after rebuild() any number of threads may query single points, and one
