@@ -81,8 +81,9 @@ BENCH = build/$(PRESET)-bench
 bench:
 	@$(INSTALL) quick bench
 	cmake --preset $(PRESET) -B $(BENCH) -DDSEAM_BUILD_BENCH=ON
-	cmake --build $(BENCH) -j $(JOBS) --target core_bench seam_bench splice_bench
+	cmake --build $(BENCH) -j $(JOBS) --target core_bench core_growth seam_bench splice_bench
 	$(BENCH)/tests/bench/core_bench --benchmark_repetitions=3
+	tests/bench/check_growth.py $(BENCH)/tests/bench/core_growth
 	$(BENCH)/tests/bench/seam_bench
 	$(BENCH)/tests/bench/splice_bench
 
@@ -98,7 +99,7 @@ check-long: build
 	@$(INSTALL) vm bench
 	ctest --preset $(PRESET) -L long
 	cmake --preset $(PRESET) -B $(BENCH) -DDSEAM_BUILD_BENCH=ON
-	cmake --build $(BENCH) -j $(JOBS) --target core_oracle core_effort
+	cmake --build $(BENCH) -j $(JOBS) --target core_oracle core_effort core_growth
 	ctest --test-dir $(BENCH) --output-on-failure -R '^bench[.]'
 
 test-vm: build

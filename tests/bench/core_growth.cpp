@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs each stage of the core once over a surface of as many points as it is told, at constant
 // density, each in a function of its own, so that callgrind can count; check_growth.py judges.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 #include "core_chain.hpp"
 #include "support/shapes/clouds.hpp"
