@@ -83,7 +83,7 @@ bench:
 	cmake --preset $(PRESET) -B $(BENCH) -DDSEAM_BUILD_BENCH=ON
 	cmake --build $(BENCH) -j $(JOBS) --target core_bench core_growth seam_bench splice_bench
 	$(BENCH)/tests/bench/core_bench --benchmark_repetitions=3
-	tests/bench/check_growth.py $(BENCH)/tests/bench/core_growth
+	tests/bench/effort/check_growth.py $(BENCH)/tests/bench/core_growth
 	$(BENCH)/tests/bench/seam_bench
 	$(BENCH)/tests/bench/splice_bench
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core_chain.hpp"
+#include "../core_chain.hpp"
 #include "support/shapes/clouds.hpp"
 
 namespace dseam::bench {
