@@ -7,7 +7,8 @@ PRESET ?= $(if $(filter 1,$(V3)),host-release,host-baseline)
 JOBS ?= $(shell nproc)
 OUT ?= out/demo
 BUILD = build/$(PRESET)
-THREADED = rt_core_test rt_linux_test candump_test socketcan_test fake_camera_test
+THREADED = rt_core_test rt_linux_test candump_test socketcan_test fake_camera_test \
+  aravis_multipart_test aravis_fault_sweep_test
 CYCLE = rt_core_test rt_session_test link_test
 INSTALL = cmake/install_packages.sh
 
@@ -45,6 +46,7 @@ sanitize:
 	ctest --preset host-asan -LE 'long|vm' -j $(JOBS)
 	cmake --preset host-tsan
 	cmake --build --preset host-tsan -j $(JOBS) --target $(THREADED)
+	export TSAN_OPTIONS="suppressions=$(CURDIR)/tests/hal/aravis/thread_sanitizer.supp history_size=7"; \
 	for t in $(THREADED); do $$(find build/host-tsan/tests -type f -name $$t) || exit 1; done
 	cmake --preset host-rtsan
 	cmake --build --preset host-rtsan -j $(JOBS) --target $(CYCLE)

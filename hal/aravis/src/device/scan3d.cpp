@@ -169,7 +169,7 @@ Result<> read_image(Features& device, depth::DepthModel& model, std::string& pro
   const auto format = depth::format_from_pfnc(code);
   if (device.unanswered().empty() && !format.ok()) {
     problem = "its pixel format " + device.text("PixelFormat") +
-              " is no depth format; ask for one with camera.pixel_format, such as Coord3D_C16";
+              " is no depth format; set its PixelFormat to one, such as Coord3D_C16";
     return Errc::kUnsupported;
   }
   if (!device.unanswered().empty()) {

@@ -169,7 +169,7 @@ void AravisCamera::Session::feed() {
   while (slots != 0) {
     const auto slot = static_cast<std::uint32_t>(std::countr_zero(slots));
     slots &= slots - 1;
-    sys_.push(device_.stream.get(), std::exchange(popped_[slot], nullptr));
+    sys_.push(device_.stream.get(), popped_[slot].exchange(nullptr));
   }
 }
 

@@ -91,7 +91,8 @@ class AravisCamera::Session {
   FrameSequence sequence_;
   std::uint32_t missing_ = 0;
   std::int64_t last_captured_ns_ = 0;
-  std::array<ArvBuffer*, SlotPool::kMaxSlots> popped_{};  ///< The consumer's until returned.
+  /// The consumer's until returned.
+  std::array<std::atomic<ArvBuffer*>, SlotPool::kMaxSlots> popped_{};
 
   std::atomic<AravisState> state_{AravisState::kIdle};
   std::atomic<bool> running_{false};

@@ -229,6 +229,7 @@ void set_up(ArvFakeCamera* fake, const FakeScan3d& scan) {
   arv_fake_camera_write_register(fake, ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US,
                                  static_cast<std::uint32_t>(1e6 / scan.frame_rate_hz));
   arv_fake_camera_write_register(fake, kCapabilityAddress, UINT32_MAX);
+  arv_fake_camera_write_register(fake, kPixelFormatAddress + 4, scan.pixel_format);
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     const double scale = axis == 2 ? scan.scale_c : scan.scale_ab;
     const double offset = axis == 2 ? scan.offset_c : scan.offset_ab;

@@ -26,7 +26,11 @@ FaultyAravis::FaultyAravis(const FakeScan3d& scan)
   arv_disable_interface("USB3Vision");
 }
 
-FaultyAravis::~FaultyAravis() { std::filesystem::remove(description_); }
+FaultyAravis::~FaultyAravis() {
+  arv_enable_interface("GigEVision");
+  arv_enable_interface("USB3Vision");
+  std::filesystem::remove(description_);
+}
 
 void FaultyAravis::fail_call(std::uint64_t n, ArvDeviceError code, bool for_ever) {
   fault_ = {calls_ + n, code, for_ever};
