@@ -14,14 +14,16 @@ std::vector<Key> camera_keys(LiveSettings& c) {
       {"camera", "pose_interface", &c.pose_interface,
        "CAN interface on which the robot reports its flange during the scan; empty for none"},
       {"camera", "gray_device", &c.gray_device,
-       "A second device (V4L2: node, Aravis: id) with the gray image; empty for none"},
-      {"camera", "width", &c.width, "V4L2: columns; 0 as the device has them", "pixels", 0, 8192},
-      {"camera", "height", &c.height, "V4L2: rows; 0 as the device has them", "pixels", 0, 8192},
+       "Where the gray image comes from: a second device (V4L2: node, Aravis: id), or the camera's "
+       "own id for both in one frame (Aravis); empty for none"},
+      {"camera", "width", &c.width, "Columns; 0 as the device has them", "pixels", 0, 8192},
+      {"camera", "height", &c.height, "Rows; 0 as the device has them", "pixels", 0, 8192},
       {"camera", "format", &c.format, "V4L2: format of the depth, up to four characters"},
-      {"camera", "mm_per_count", &c.mm_per_count, "V4L2: millimetres a count of depth", "mm", 0,
-       100},
-      {"camera", "focal_px", &c.focal_px, "V4L2: focal length; the image's middle is on the axis",
-       "pixels", 0, 1e5},
+      {"camera", "mm_per_count", &c.mm_per_count,
+       "Millimetres a count of depth, where the device does not say; 0: it does", "mm", 0, 100},
+      {"camera", "focal_px", &c.focal_px,
+       "Focal length, where the device does not say; the image's middle is on the axis", "pixels",
+       0, 1e5},
   };
 }
 

@@ -94,22 +94,45 @@ void check_pair(const hal::DepthCamera& camera, const hal::DepthCamera& gray,
   }
 }
 
+/// What the settings say of a camera that does not describe itself.
+depth::DepthModel assumed_model(const LiveSettings& settings) {
+  depth::DepthModel model;
+  model.scale[2] = settings.mm_per_count;
+  model.intrinsics.fx = settings.focal_px;
+  model.intrinsics.fy = settings.focal_px;
+  model.intrinsics.cx = 0.5 * (settings.width - 1.0);
+  model.intrinsics.cy = 0.5 * (settings.height - 1.0);
+  return model;
+}
+
 #ifdef DSEAM_HAS_ARAVIS
-std::unique_ptr<hal::aravis::AravisCamera> open_genicam(const std::string& id, bool gray) {
+std::unique_ptr<hal::aravis::AravisCamera> open_genicam(const hal::aravis::AravisConfig& config) {
+  std::string problem;
+  return camera_of(hal::aravis::AravisCamera::open(config, problem), "aravis:" + config.id,
+                   problem);
+}
+
+/// The depth camera; with a description of ours when it has none of its own.
+hal::aravis::AravisConfig genicam_depth(const std::string& id, const LiveSettings& settings) {
   hal::aravis::AravisConfig config;
   config.id = id;
-  config.gray = gray;
-  std::string problem;
-  return camera_of(hal::aravis::AravisCamera::open(config, problem), "aravis:" + id, problem);
+  config.gray_beside_depth = settings.gray_device == id;
+  if (settings.mm_per_count > 0.0) {
+    config.assumed_model = assumed_model(settings);
+  }
+  return config;
 }
 
 std::unique_ptr<ScanSource> open_aravis(const std::string& id, const LiveSettings& settings,
                                         const link::Sender::Config& link) {
   using hal::aravis::AravisCamera;
-  auto camera = open_genicam(id, false);
+  auto camera = open_genicam(genicam_depth(id, settings));
   std::unique_ptr<AravisCamera> gray;
-  if (!settings.gray_device.empty()) {
-    gray = open_genicam(settings.gray_device, true);
+  if (!settings.gray_device.empty() && settings.gray_device != id) {
+    hal::aravis::AravisConfig config;
+    config.id = settings.gray_device;
+    config.gray = true;
+    gray = open_genicam(config);
     check_pair(*camera, *gray, "aravis:" + settings.gray_device);
   }
   return std::make_unique<LiveScan<AravisCamera>>(std::move(camera), std::move(gray),
@@ -128,11 +151,7 @@ std::unique_ptr<hal::v4l2::V4l2Camera> open_node(const std::string& device, bool
   std::string code = gray ? "GREY" : settings.format;
   code.resize(4, ' ');
   config.fourcc = depth::fourcc(code[0], code[1], code[2], code[3]);
-  config.model.scale[2] = settings.mm_per_count;
-  config.model.intrinsics.fx = settings.focal_px;
-  config.model.intrinsics.fy = settings.focal_px;
-  config.model.intrinsics.cx = 0.5 * (settings.width - 1.0);
-  config.model.intrinsics.cy = 0.5 * (settings.height - 1.0);
+  config.model = assumed_model(settings);
   std::string problem;
   return camera_of(hal::v4l2::V4l2Camera::open(config, hal::v4l2::linux_v4l2_sys(), problem),
                    "v4l2:" + device, problem);
