@@ -88,6 +88,10 @@ class SpliceChain {
   void extract(const depth::DepthImage& frame, ViewReport& report) noexcept;
   void place(std::size_t view, ViewReport& report) noexcept;
   void place_pending() noexcept;
+  [[nodiscard]] std::size_t num_standing() const noexcept;
+  void start_from(std::size_t first) noexcept;
+  void choose_first() noexcept;
+  void move_to_first_camera() noexcept;
   [[nodiscard]] bool can_be_first(std::size_t view) const noexcept;
   [[nodiscard]] bool match(std::size_t view, ViewReport& report) noexcept;
   void enter_landmarks(std::size_t view) noexcept;

@@ -94,26 +94,79 @@ SpliceChain::ViewReport SpliceChain::add(const depth::DepthImage& frame,
   stores_[num_views_].reported = report.reported_refused ? splice::ReportedPose{} : reported;
   const std::size_t view = num_views_++;
   place(view, report);
-  if (report.live.state != LiveSplicer::State::kUnplaced) {
+  if (posed_[view].used) {
     place_pending();
   }
   return report;
 }
 
-// A view that shares too few markers with those before it may share more with those after it.
+// A view that shares too little with those before it may share more with those after it.
 void SpliceChain::place_pending() noexcept {
   for (std::size_t round = 0; round < num_views_; ++round) {
     bool placed_one = false;
     for (std::size_t view = 0; view < num_views_; ++view) {
-      if (!inputs_[view].placed) {
+      if (!posed_[view].used) {
         ViewReport report;
         place(view, report);
-        placed_one = placed_one || inputs_[view].placed;
+        placed_one = placed_one || posed_[view].used;
       }
     }
     if (!placed_one) {
       return;
     }
+  }
+}
+
+std::size_t SpliceChain::num_standing() const noexcept {
+  const auto views = posed_.first(num_views_);
+  return static_cast<std::size_t>(
+      std::count_if(views.begin(), views.end(), [](const auto& view) { return view.used; }));
+}
+
+// All views once more, `first` before the others.
+void SpliceChain::start_from(std::size_t first) noexcept {
+  landmarks_.clear();
+  for (std::size_t view = 0; view < num_views_; ++view) {
+    posed_[view].used = false;
+    std::fill(stores_[view].landmarks.begin(), stores_[view].landmarks.end(), kNoLandmark);
+  }
+  ViewReport report;
+  place(first, report);
+  place_pending();
+}
+
+// The others hang on the view that stands first. Where some find nothing to hang on, another one
+// may tie more of them.
+void SpliceChain::choose_first() noexcept {
+  std::size_t best = 0;
+  std::size_t most = num_standing();
+  std::size_t tried = 0;
+  for (std::size_t view = 1; view < num_views_ && most < num_views_; ++view) {
+    start_from(view);
+    tried = view;
+    if (num_standing() > most) {
+      best = view;
+      most = num_standing();
+    }
+  }
+  if (tried != best) {
+    start_from(best);
+  }
+  move_to_first_camera();
+}
+
+// Where nobody reports, the frame is that of the first camera, whichever view the others hang on.
+void SpliceChain::move_to_first_camera() noexcept {
+  const auto stores = stores_.first(num_views_);
+  const bool any_reported =
+      std::any_of(stores.begin(), stores.end(), [](const auto& s) { return s.reported.known; });
+  if (any_reported || num_views_ == 0 || !posed_[0].used) {
+    return;
+  }
+  const geometry::RigidTransform T_first_base = posed_[0].T_camera_base;
+  for (std::size_t view = 0; view < num_views_; ++view) {
+    posed_[view].place(T_first_base * posed_[view].T_base_camera);
+    inputs_[view].start_T_base_camera = posed_[view].T_base_camera;
   }
 }
 
@@ -225,12 +278,8 @@ void SpliceChain::collect_sights() noexcept {
 }
 
 NetworkReport SpliceChain::finish(Buffer<splice::SplicedView>& out) noexcept {
-  for (std::size_t view = 0; view < num_views_; ++view) {
-    if (!posed_[view].used) {
-      ViewReport report;
-      place(view, report);
-    }
-  }
+  place_pending();
+  choose_first();
   collect_sights();
   return network_->run(inputs_.first(num_views_), sights_.view(), out);
 }

@@ -90,6 +90,28 @@ TEST(SpliceBadInput, a_first_frame_without_depth_costs_that_view_alone) {
   EXPECT_LT(splice_error_mm(marked_scan(), spliced), 0.03);
 }
 
+TEST(SpliceBadInput, a_first_view_that_no_other_hangs_on_costs_that_view_alone) {
+  std::vector<depth::DepthImage> frames = marked_scan().frames;
+  frames[0] = other_part().frames[0];
+
+  const Spliced spliced = splice_all(frames, {});
+
+  EXPECT_EQ(spliced.views[0].state, ViewState::kNoOverlap);
+  EXPECT_EQ(spliced.report.num_used, 5U);
+  EXPECT_LT(splice_error_mm(marked_scan(), spliced), 0.03);
+}
+
+TEST(SpliceBadInput, a_first_view_of_another_part_leaves_the_others_their_markers) {
+  std::vector<depth::DepthImage> frames = marked_scan().frames;
+  frames[0] = other_part().frames[0];
+
+  const Spliced spliced = splice_all(frames, marked_scan().reported);
+
+  EXPECT_NE(spliced.views[0].state, ViewState::kUsed);
+  EXPECT_GE(spliced.report.num_markers, 12U);
+  EXPECT_LT(splice_error_mm(marked_scan(), spliced), 0.03);
+}
+
 TEST(SpliceBadInput, markers_that_were_moved_do_not_bend_the_views) {
   std::vector<depth::DepthImage> frames = marked_scan().frames;
   std::vector<splice::ReportedPose> reported = marked_scan().reported;
