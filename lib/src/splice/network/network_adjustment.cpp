@@ -180,7 +180,7 @@ bool Adjustment::settle_weights() noexcept {
 
 void Adjustment::adjust() noexcept {
   constexpr double kSettledMm = 2e-4;
-  constexpr double kSettledDecrement = 1e-3;
+  constexpr double kSettledSigmas = 0.05;
   double gate = config.start_gate_mm;
   report.state = NetworkState::kNotConverged;
   sigma_mm = kPatchSigmaMm;
@@ -195,7 +195,9 @@ void Adjustment::adjust() noexcept {
     const bool at_last_gate = gate <= config.final_gate_mm || gate <= 1.01 * final_gate;
     // Where the surfaces leave a direction to the reports, ties that come and go keep the last step
     // above any fixed length: then it is enough that it is small beside its own sigma.
-    const bool settled = largest < kSettledMm || decrement < kSettledDecrement;
+    const double settled_decrement =
+        kSettledSigmas * kSettledSigmas * 6.0 * static_cast<double>(num_used());
+    const bool settled = largest < kSettledMm || decrement < settled_decrement;
     if (at_last_gate && settle_weights() && settled) {
       report.state = NetworkState::kAdjusted;
       return;
