@@ -22,6 +22,8 @@ constexpr std::size_t kEnoughToRefine = 4000;
 constexpr double kBesideMm = 8.0;  // Within this every point counts: for coverage and edges.
 constexpr int kRefinements = 3;
 constexpr int kModelRounds = 3;
+constexpr int kReselections = 4;
+constexpr double kFarShare = 0.3;  // Of how far a point may lie off: a deviation that costs points.
 
 }  // namespace
 
@@ -40,6 +42,7 @@ bool JointFit::run(const cloud::CloudView& cloud, const Joint& found,
                    double tolerance_mm) noexcept {
   joint_ = found;
   bore_ = bore;
+  follows_model_ = false;
   band_mm_ = std::clamp(0.5 * found.nozzle.radius_mm, 12.0, 28.0) + 2.0 * spacing_mm;
   inner_mm_ = kInnerSpacings * spacing_mm;
   const double round = kTurnRad * found.nozzle.radius_mm / std::max(kPatchMm, 3.0 * spacing_mm);
@@ -53,7 +56,28 @@ bool JointFit::run(const cloud::CloudView& cloud, const Joint& found,
   select(cloud, 1.5 * tolerance_mm);
   model(shell_, joint_.shell);
   model(nozzle_, joint_.nozzle);
+  // The flanks of an oval nozzle lie farther off than a point may. What is seen of them tells more
+  // of them, and so on.
+  follows_model_ = true;
+  for (int i = 0; i < kReselections && nozzle_.fitted && deviates(kFarShare * tolerance_mm); ++i) {
+    select(cloud, 1.5 * tolerance_mm);
+    model(shell_, joint_.shell);
+    model(nozzle_, joint_.nozzle);
+  }
   return shell_.fitted && nozzle_.fitted;
+}
+
+bool JointFit::deviates(double limit_mm) const noexcept {
+  constexpr int kAngles = 36;
+  constexpr double kAway = 0.3;
+  for (int i = 0; i < kAngles; ++i) {
+    const double phi_rad = kTurnRad * i / kAngles;
+    const auto root = root_at(joint_, frame_, phi_rad);
+    if (root && std::abs(nozzle_.residual.at(*root, phi_rad, kAway)) > limit_mm) {
+      return true;
+    }
+  }
+  return false;
 }
 
 // All points beside the joint, and of those farther off as many as the surfaces need.
@@ -67,7 +91,9 @@ void JointFit::select(const cloud::CloudView& cloud, double tolerance_mm) noexce
   const std::size_t stride = 1 + cloud.size() / enough;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3d p(cloud.x[i], cloud.y[i], cloud.z[i]);
-    const double outside = signed_distance(joint_.nozzle, p);
+    const double off_cylinder = signed_distance(joint_.nozzle, p);
+    const bool to_model = follows_model_ && std::abs(off_cylinder) < band_mm_;
+    const double outside = to_model ? outside_nozzle(p) : off_cylinder;
     if (!(outside > -tolerance_mm && outside < band_mm_) ||
         (outside > kBesideMm && i % stride != 0)) {
       continue;

@@ -55,6 +55,9 @@ std::vector<Joint> joints() {
   JointCloudConfig oval = paper_joint();
   oval.nozzle_ovality_mm = 0.3;
   joints.push_back({"oval", oval, 0.03});
+  oval.nozzle_radius_mm = 84.0;
+  oval.nozzle_ovality_mm = 0.8;
+  joints.push_back({"as_oval_as_a_pipe_may_be", oval, 0.05});
   JointCloudConfig dead_band = paper_joint();
   dead_band.dead_band_mm = 2.0;
   joints.push_back({"dead_band", dead_band, 0.02});

@@ -78,6 +78,7 @@ class JointFit {
   };
 
   void select(const cloud::CloudView& cloud, double tolerance_mm) noexcept;
+  [[nodiscard]] bool deviates(double limit_mm) const noexcept;
   void add(const Eigen::Vector3d& p, double outside, double above, bool to_shell) noexcept;
   void measure(Side& side, const Surface& surface) const noexcept;
   bool refine(Side& side, Surface& surface) noexcept;
@@ -95,6 +96,7 @@ class JointFit {
   double inner_mm_ = 0.0;
   std::size_t patches_round_ = 1;
   std::uint32_t num_dropped_ = 0;
+  bool follows_model_ = false;
   Side shell_;
   Side nozzle_;
   std::span<float> scratch_;
