@@ -56,7 +56,7 @@ constexpr std::size_t kFinerVoxels = 5;  // At half the size; four, and some for
 
 bool may_be_too_coarse(seam::Refusal refusal) noexcept {
   return refusal == seam::Refusal::kNoRing || refusal == seam::Refusal::kOneSurface ||
-         refusal == seam::Refusal::kTwoRings;
+         refusal == seam::Refusal::kTwoRings || refusal == seam::Refusal::kLowCoverage;
 }
 
 bool stands(const splice::NetworkReport& network) noexcept {
@@ -191,7 +191,8 @@ bool WeldPipeline::find_coarsely(WeldReport& report, StageObserver* observer) no
     report.seam = seam_->run(input, seam_points_);
     tell(observer, Stage::kCoarseSeam);
     const std::size_t finer = kFinerVoxels * map_->size();
-    if (!may_be_too_coarse(report.seam.refusal) || 0.5 * cell_mm < config_.fine_cell_mm ||
+    const bool nothing = seam_points_.empty() && may_be_too_coarse(report.seam.refusal);
+    if (!nothing || 0.5 * cell_mm < config_.fine_cell_mm ||
         finer > std::min(capacity_.max_voxels, capacity_.seam.max_points)) {
       return !seam_points_.empty();
     }
