@@ -156,11 +156,12 @@ bool SeamChain::find_edges(const SeamInput& in, seam::SeamReport& report) noexce
   if (!scan_edge(in, Which::kShell, report)) {
     return false;
   }
-  if (shell.fit(edges_.intervals()) && seam::describe_gap(shell, report.joint)) {
+  if (shell.fit(edges_.intervals(), edges_.smear_mm()) && seam::describe_gap(shell, report.joint)) {
     found_.shell = &shell;
   } else if (!scan_edge(in, Which::kNozzle, report)) {
     return false;
-  } else if (nozzle.fit(edges_.intervals()) && seam::describe_mismatch(nozzle, report.joint)) {
+  } else if (nozzle.fit(edges_.intervals(), edges_.smear_mm()) &&
+             seam::describe_mismatch(nozzle, report.joint)) {
     found_.nozzle = &nozzle;
   }
   report.refusal = has(report.reference) ? Refusal::kNone : Refusal::kNoSuchReference;

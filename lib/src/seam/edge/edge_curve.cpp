@@ -156,8 +156,9 @@ bool EdgeCurve::stays_among(std::span<const EdgeInterval> intervals) const noexc
   return true;
 }
 
-bool EdgeCurve::fit(std::span<const EdgeInterval> intervals) noexcept {
+bool EdgeCurve::fit(std::span<const EdgeInterval> intervals, double smear_mm) noexcept {
   constexpr std::array<std::size_t, 6> kOrders = {1, 3, 5, 7, 9, 13};
+  smear_mm_ = smear_mm;
   estimate_slack(intervals);
   const std::size_t unseen = longest_gap(slack_mm_);
   if (intervals.size() < kMinIntervals || unseen > kMaxUnseen) {
@@ -261,7 +262,8 @@ double EdgeCurve::variance_at(double phi_rad) const noexcept {
   // Where hardly a vote holds the curve it is free, but not beyond the intervals.
   const double slack = slack_mm_[sector_of(phi_rad)];
   const double least = slack == kUnheld ? slack * slack / 12.0 : 0.0;
-  return scatter + std::max(least, std::min(freedom, slack * slack / 12.0));
+  return scatter + smear_mm_ * smear_mm_ / 12.0 +
+         std::max(least, std::min(freedom, slack * slack / 12.0));
 }
 
 }  // namespace dseam::seam

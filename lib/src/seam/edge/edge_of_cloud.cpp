@@ -47,6 +47,7 @@ void EdgeScanner::collect_nearest(const EndingSurface& surface) noexcept {
 
 void EdgeScanner::run(const EndingSurface& surface, double spacing_mm) noexcept {
   intervals_.clear();
+  shape_ = {};
   full_ = false;
   collect_nearest(surface);
   // Of points so dense, the k-th nearest to an edge lies k of these steps from it on average.

@@ -16,7 +16,6 @@ constexpr double kInsideMm = 1.0;  // Deeper than this in the other one is its i
 constexpr double kBehindMm = 60.0;
 constexpr double kMarginMm = 0.1;
 constexpr double kMarginNoises = 4.0;
-constexpr double kSurfaceShare = 0.6;  // Of the margin: between the two a pixel tells nothing.
 constexpr std::size_t kMaxApart = 24;  // A dead band lies between the two.
 constexpr std::size_t kMaxFlying = 3;
 constexpr std::size_t kSurfaceRun = 2;  // Pixels beside the last one.
@@ -36,6 +35,15 @@ void EdgeScanner::run(std::span<const depth::DepthImage> frames,
                       double noise_mm) noexcept {
   surface_ = surface;
   margin_mm_ = kMarginMm + kMarginNoises * std::max(noise_mm, pixel_noise_mm(frames, views));
+  shape_ = {};
+  scan(frames, views);
+  if (look_again()) {
+    scan(frames, views);
+  }
+}
+
+void EdgeScanner::scan(std::span<const depth::DepthImage> frames,
+                       std::span<const splice::SplicedView> views) noexcept {
   intervals_.clear();
   full_ = false;
   for (std::size_t i = 0; i < std::min(frames.size(), views.size()); ++i) {
@@ -198,13 +206,19 @@ void EdgeScanner::scan_line(const depth::DepthImage& frame, const Step& start,
   }
 }
 
+// Through the line's pixel, 1 along the optical axis.
+Eigen::Vector3d EdgeScanner::ray_base(const depth::DepthImage& frame, const Step& start,
+                                      std::size_t i) const noexcept {
+  const double u = start.u + (start.along_u ? static_cast<double>(i) : 0.0);
+  const double v = start.v + (start.along_u ? 0.0 : static_cast<double>(i));
+  return T_base_camera_.rotation * ray_of(frame.intrinsics, u, v);
+}
+
 // The pixel's place on the fitted surface, whether that is there or not.
 std::optional<Eigen::Vector3d> EdgeScanner::on_surface(const depth::DepthImage& frame,
                                                        const Step& start,
                                                        std::size_t i) const noexcept {
-  const double u = start.u + (start.along_u ? static_cast<double>(i) : 0.0);
-  const double v = start.v + (start.along_u ? 0.0 : static_cast<double>(i));
-  const Eigen::Vector3d direction = T_base_camera_.rotation * ray_of(frame.intrinsics, u, v);
+  const Eigen::Vector3d direction = ray_base(frame, start, i);
   Eigen::Vector3d p = T_base_camera_.translation_mm + double{line_[i].z_mm} * direction;
   for (int k = 0; k < 4; ++k) {
     const double slope = surface_.normal(p).dot(direction);
@@ -269,23 +283,14 @@ void EdgeScanner::try_pair(const depth::DepthImage& frame, const Step& start, st
     return;
   }
   const double low_mm = surface_.away(*low);
-  const double high_mm = surface_.away(*high) + past_edge_mm(frame, start, last, *high);
+  const double high_mm =
+      surface_.away(*high) + past_edge_mm(frame, start, last, *high) + shape_.reach_mm;
   if (low_mm < high_mm && low_mm > -kInsideMm && high_mm < kReachMm) {
     const double phi = surface_.angle_of(0.5 * (*low + *high));
-    full_ = !intervals_.append({phi, low_mm, high_mm}) || full_;
+    const EdgeInterval seen{phi, low_mm, high_mm};
+    const EdgeInterval edge = by_shape(frame, start, {last, *sure, count}, seen);
+    full_ = !intervals_.append(edge) || full_;
   }
-}
-
-// Where the ray runs away from the other surface it may have met the wall just under the edge,
-// which counts as surface down to the margin: so far past the edge may the pixel be.
-double EdgeScanner::past_edge_mm(const depth::DepthImage& frame, const Step& start, std::size_t i,
-                                 const Eigen::Vector3d& p) const noexcept {
-  const double u = start.u + (start.along_u ? static_cast<double>(i) : 0.0);
-  const double v = start.v + (start.along_u ? 0.0 : static_cast<double>(i));
-  const Eigen::Vector3d direction = T_base_camera_.rotation * ray_of(frame.intrinsics, u, v);
-  const double outwards = direction.dot(surface_.outwards(p));
-  const double down = -direction.dot(surface_.normal(p));
-  return down > 0.0 ? std::max(0.0, outwards / down) * kSurfaceShare * margin_mm_ : 0.0;
 }
 
 }  // namespace dseam::seam

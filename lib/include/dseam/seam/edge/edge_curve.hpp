@@ -32,7 +32,9 @@ class EdgeCurve {
   using Vector = std::array<double, kMaxOrder>;
 
   /// False when the intervals are too few, or leave a quarter of the turn without one.
-  bool fit(std::span<const EdgeInterval> intervals) noexcept;
+  ///
+  /// `smear_mm` is the length over which the scanner smears the edge: all intervals then err alike.
+  bool fit(std::span<const EdgeInterval> intervals, double smear_mm = 0.0) noexcept;
 
   [[nodiscard]] double at(double phi_rad) const noexcept;
   /// Of at(): what the votes disagree about, and how far the intervals leave the curve free.
@@ -60,6 +62,7 @@ class EdgeCurve {
 
   std::size_t order_ = 1;
   double blur_mm_ = 1.0;
+  double smear_mm_ = 0.0;
   std::array<double, kSectors> slack_mm_{};
   Vector coefficients_{};
   Storage normal_{};  // Its Cholesky factor after improve().

@@ -51,6 +51,8 @@ class EdgeScanner {
   [[nodiscard]] std::span<const EdgeInterval> intervals() const noexcept {
     return intervals_.view();
   }
+  /// Over how long a way a smeared edge goes down; 0 for a sharp one.
+  [[nodiscard]] double smear_mm() const noexcept;
 
  private:
   enum class Kind : std::uint8_t { kNothing, kSurface, kBehind, kOther };
@@ -58,6 +60,8 @@ class EdgeScanner {
     Kind kind = Kind::kNothing;
     float z_mm = 0.0F;
   };
+  static constexpr double kSurfaceShare =
+      0.6;  // Of the margin: between the two a pixel tells nothing.
   static constexpr std::uint32_t kBlock = 8;  // Pixels across a block.
   static constexpr std::uint32_t kBlocksAcross = kMaxLine / kBlock;
   static constexpr std::size_t kBins = 120;
@@ -77,7 +81,31 @@ class EdgeScanner {
     std::uint32_t u, v;
     bool along_u;
   };
+  struct Walk {
+    std::size_t last, sure;  // The surface's last pixel, and the first one that is sure beneath it.
+    std::size_t count;       // Of the line's pixels.
 
+    [[nodiscard]] bool has(std::size_t i, std::size_t beyond) const noexcept {
+      return sure > last ? i + beyond < count : i >= beyond;
+    }
+    [[nodiscard]] std::size_t at(std::size_t i, std::size_t beyond) const noexcept {
+      return sure > last ? i + beyond : i - beyond;
+    }
+  };
+
+  // What the lines that were walked say of the edge: sharp, bevelled, or smeared by the scanner.
+  struct EdgeShape {
+    std::size_t pairs = 0;
+    std::size_t bevelled = 0;
+    std::size_t shallow = 0;  // Those that go down by and by, bevelled or not.
+    double runs = 0.0;        // Of the bevelled: the sum of what each runs back for a mm that it
+    double squares = 0.0;     // falls, and of its squares.
+    double reach_mm = 0.0;    // So far over a bevel a pixel cannot be told from the surface.
+    bool is_smeared = false;
+  };
+
+  void scan(std::span<const depth::DepthImage> frames,
+            std::span<const splice::SplicedView> views) noexcept;
   [[nodiscard]] double pixel_noise_mm(std::span<const depth::DepthImage> frames,
                                       std::span<const splice::SplicedView> views) noexcept;
   [[nodiscard]] double off_surface_mm(const depth::DepthImage& frame, std::uint32_t u,
@@ -101,9 +129,27 @@ class EdgeScanner {
                                                           const Step& start,
                                                           std::size_t i) const noexcept;
 
+  [[nodiscard]] Eigen::Vector3d ray_base(const depth::DepthImage& frame, const Step& start,
+                                         std::size_t i) const noexcept;
+  [[nodiscard]] std::optional<Eigen::Vector2d> place_of(const depth::DepthImage& frame,
+                                                        const Step& start,
+                                                        std::size_t i) const noexcept;
+  [[nodiscard]] Eigen::Vector2d foot_of_bevel(const depth::DepthImage& frame, const Step& start,
+                                              const Walk& walk,
+                                              const Eigen::Vector2d& top) const noexcept;
+  [[nodiscard]] std::optional<EdgeInterval> at_bevel(const depth::DepthImage& frame,
+                                                     const Step& start, const Walk& walk,
+                                                     const EdgeInterval& seen) noexcept;
+  [[nodiscard]] std::size_t steepest(const depth::DepthImage& frame, const Step& start,
+                                     const Walk& walk) const noexcept;
+  [[nodiscard]] EdgeInterval by_shape(const depth::DepthImage& frame, const Step& start,
+                                      const Walk& walk, const EdgeInterval& seen) noexcept;
+  [[nodiscard]] bool look_again() noexcept;
+
   EndingSurface surface_;
   geometry::RigidTransform T_base_camera_;
   double margin_mm_ = 0.1;
+  EdgeShape shape_;
   bool full_ = false;
   Buffer<EdgeInterval> intervals_;
   std::span<Pixel> line_;
