@@ -12,7 +12,7 @@ constexpr double kTurnRad = 2.0 * std::numbers::pi;
 constexpr double kNearMm = 3.0;
 constexpr double kMaxDeadBandMm = 4.0;
 constexpr double kSpacingsPerBin = 2.5;
-constexpr double kHiddenSpacings = 1.5;
+constexpr double kHiddenSpacings = 0.3;
 constexpr float kNothing = 1e9F;
 
 }  // namespace

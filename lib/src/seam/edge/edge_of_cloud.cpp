@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kTurnRad = 2.0 * std::numbers::pi;
 constexpr double kNothing = 1e9;
+// How far the points are from showing where between them the surface ends, all round alike.
+constexpr double kSmearSpacings = 0.5;
 constexpr double kHalfWidthSpacings = 0.3;  // What one bin leaves open.
 // A voxel that the edge cuts still gives a point: the points end nearer to the other
 // surface than the surface itself.
@@ -47,7 +49,7 @@ void EdgeScanner::collect_nearest(const EndingSurface& surface) noexcept {
 
 void EdgeScanner::run(const EndingSurface& surface, double spacing_mm) noexcept {
   intervals_.clear();
-  shape_ = {};
+  smear_mm_ = kSmearSpacings * spacing_mm;
   full_ = false;
   collect_nearest(surface);
   // Of points so dense, the k-th nearest to an edge lies k of these steps from it on average.

@@ -40,6 +40,7 @@ void EdgeScanner::run(std::span<const depth::DepthImage> frames,
   if (look_again()) {
     scan(frames, views);
   }
+  smear_mm_ = shape_.is_smeared ? mean_width_mm() : 0.0;
 }
 
 void EdgeScanner::scan(std::span<const depth::DepthImage> frames,

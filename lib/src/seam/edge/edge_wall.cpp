@@ -134,13 +134,12 @@ bool EdgeScanner::look_again() noexcept {
   return shape_.is_smeared || shape_.reach_mm > 0.0;
 }
 
-double EdgeScanner::smear_mm() const noexcept {
+double EdgeScanner::mean_width_mm() const noexcept {
   double sum = 0.0;
   for (const EdgeInterval& interval : intervals_.view()) {
     sum += interval.high_mm - interval.low_mm;
   }
-  const double count = std::max(1.0, static_cast<double>(intervals_.size()));
-  return shape_.is_smeared ? sum / count : 0.0;
+  return sum / std::max(1.0, static_cast<double>(intervals_.size()));
 }
 
 // Where the ray runs away from the other surface it may have met the wall just under the edge,

@@ -165,6 +165,24 @@ TEST(SeamRefusal, a_gap_that_nobody_saw_the_edge_of_is_too_uncertain_to_weld) {
   EXPECT_GE(report.joint.hidden_gap_mm, 2.0);
 }
 
+TEST(SeamRefusal, a_gap_that_sparse_points_hardly_show_is_not_welded_as_if_it_were_known) {
+  for (const double spacing_mm : {1.0, 1.5, 2.0, 2.5, 3.0}) {
+    for (const double gap_mm : {1.0, 2.0, 3.0}) {
+      JointCloudConfig config = paper_joint();
+      config.spacing_mm = spacing_mm;
+      config.gap_mm = gap_mm;
+      const JointCloud cloud(config);
+      SeamFinder finder;
+
+      const SeamReport report = finder.find(cloud);
+
+      const double worst_mm = finder.worst_error(cloud.curve(1440, gap_mm));
+      EXPECT_TRUE(!report.weld() || worst_mm < 3.0 * report.quality.max_sigma_lateral_mm)
+          << spacing_mm << " mm apart, a gap of " << gap_mm << " mm: " << worst_mm << " mm off";
+    }
+  }
+}
+
 TEST(SeamRefusal, more_points_beside_the_joint_than_there_is_room_for_are_named) {
   const JointCloud cloud(paper_joint());
   const SeamChain::Capacity little{.max_points = 3000, .max_edge_intervals = 1000};

@@ -51,8 +51,8 @@ class EdgeScanner {
   [[nodiscard]] std::span<const EdgeInterval> intervals() const noexcept {
     return intervals_.view();
   }
-  /// Over how long a way a smeared edge goes down; 0 for a sharp one.
-  [[nodiscard]] double smear_mm() const noexcept;
+  /// The length over which all intervals may err alike; 0 for a sharp edge in the frames.
+  [[nodiscard]] double smear_mm() const noexcept { return smear_mm_; }
 
  private:
   enum class Kind : std::uint8_t { kNothing, kSurface, kBehind, kOther };
@@ -145,11 +145,13 @@ class EdgeScanner {
   [[nodiscard]] EdgeInterval by_shape(const depth::DepthImage& frame, const Step& start,
                                       const Walk& walk, const EdgeInterval& seen) noexcept;
   [[nodiscard]] bool look_again() noexcept;
+  [[nodiscard]] double mean_width_mm() const noexcept;
 
   EndingSurface surface_;
   geometry::RigidTransform T_base_camera_;
   double margin_mm_ = 0.1;
   EdgeShape shape_;
+  double smear_mm_ = 0.0;
   bool full_ = false;
   Buffer<EdgeInterval> intervals_;
   std::span<Pixel> line_;
