@@ -2,6 +2,7 @@
 // The CAN contract and the weld link on the kernel's own drivers: vcan, vxcan and an emulated
 // Kvaser pair (sja1000). The guest's init made and configured the interfaces.
 #include <cstdlib>
+#include <iostream>
 #include <memory>
 #include <string>
 
@@ -10,7 +11,7 @@
 #include "dseam/hal/sim/sim_robot.hpp"
 #include "dseam/hal/socketcan/link_check.hpp"
 #include "dseam/hal/socketcan/socketcan_bus.hpp"
-#include "hal/sim_robot/cell.hpp"
+#include "hal/sim_robot/weld_tally.hpp"
 
 namespace dseam::test {
 namespace {
@@ -85,16 +86,41 @@ std::size_t points_wanted() {
   return wanted == nullptr ? 20'000 : std::strtoul(wanted, nullptr, 10);
 }
 
+/// Between the host and the kernel's bus lies a simulated one that loses, doubles, delays and
+/// spoils frames both ways.
+TEST(LinkOnVcan, points_over_a_faulty_way_are_executed_once_in_order_and_unspoilt) {
+  constexpr std::size_t kPointsAWeld = 5'000;
+  const auto gateway = open("vcan0", true);
+  const auto robots = open("vcan0", true);
+  LinkCell cell(*robots, *gateway, seeded(1), recording(points_wanted() + 200'000));
+  cell.bus_.set_faults(faults_of_every_kind(5e-4, 2e-4));
+  Tally tally;
+
+  for (std::uint32_t session = 1; tally.executed < points_wanted() && session < 2000; ++session) {
+    weld_once(cell, session, kPointsAWeld, tally);
+  }
+
+  std::cout << tally.executed << " points over vcan, " << cell.bus_.fault_counts().total()
+            << " faults, " << tally.done << " welds done, " << tally.tripped << " tripped, "
+            << tally.wrong << " wrong, " << tally.foreign << " of another session\n";
+  EXPECT_GE(tally.executed, points_wanted());
+  EXPECT_EQ(tally.wrong, 0U);
+  EXPECT_EQ(tally.foreign, 0U);
+  EXPECT_GE(tally.done, 1U);
+  EXPECT_GE(cell.bus_.fault_counts().total(), points_wanted() / 1000);
+}
+
 TEST(LinkOnVcan, a_long_path_is_executed_once_in_order_and_whole) {
+  constexpr std::size_t kPoints = 20'000;
   const auto host_bus = open("vcan0", true);
   const auto robot_bus = open("vcan0", true);
   hal::fake::ManualClock clock(1'000'000'000);
   hal::sim::SimRobot::Config config;
-  config.record_points = points_wanted();
+  config.record_points = kPoints;
   hal::sim::SimRobot robot(config, *robot_bus);
   hal::LinkPort port(*host_bus);
   link::Sender sender = link::Sender::make({}).value();
-  auto points = round_weld(points_wanted(), 1000);
+  auto points = round_weld(kPoints, 1000);
 
   auto progress = link::WeldProgress::kUnderWay;
   while (progress == link::WeldProgress::kUnderWay) {

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "dseam/hal/bus/link_port.hpp"
@@ -28,6 +30,28 @@ inline std::vector<trajectory::SetPoint> round_weld(std::size_t count, std::uint
   return points;
 }
 
+/// Carries every frame of each bus to the other.
+class Gateway {
+ public:
+  Gateway(hal::CanBus& a, hal::CanBus& b) : a_(a), b_(b) {}
+
+  void carry() {
+    carry(a_, b_);
+    carry(b_, a_);
+  }
+
+ private:
+  static void carry(hal::CanBus& from, hal::CanBus& to) {
+    using namespace std::chrono_literals;
+    for (auto frame = from.receive(0ns); frame.ok(); frame = from.receive(0ns)) {
+      (void)to.send(frame.value());
+    }
+  }
+
+  hal::CanBus& a_;
+  hal::CanBus& b_;
+};
+
 /// Host, bus and robot in virtual time, one millisecond a step.
 class LinkCell {
  public:
@@ -41,6 +65,15 @@ class LinkCell {
         robot_(robot, bus_.connect()),
         port_(host_end_),
         sender_(link::Sender::make(sender).value()) {}
+  /// The robot on a bus of its own, which a gateway's end joins to the simulated one.
+  LinkCell(hal::CanBus& robots_end, hal::CanBus& gateways_end, const hal::sim::SimBus::Config& bus,
+           const hal::sim::SimRobot::Config& robot)
+      : bus_(bus, clock_),
+        host_end_(bus_.connect()),
+        gateway_(std::in_place, bus_.connect(), gateways_end),
+        robot_(robot, robots_end),
+        port_(host_end_),
+        sender_(link::Sender::make({}).value()) {}
 
   link::WeldProgress step(const link::WeldOrder& weld) {
     const link::WeldProgress progress = link::give_next_order(sender_, weld, clock_.now_ns());
@@ -50,6 +83,9 @@ class LinkCell {
   void step_without_orders() {
     clock_.advance(kStepNs);
     port_.turn(sender_, clock_.now_ns());
+    if (gateway_) {
+      gateway_->carry();
+    }
     robot_.step(clock_.now_ns());
   }
   link::WeldProgress run(const link::WeldOrder& weld, int most_steps) {
@@ -63,6 +99,7 @@ class LinkCell {
   hal::fake::ManualClock clock_{1'000'000'000};
   hal::sim::SimBus bus_;
   hal::CanBus& host_end_;
+  std::optional<Gateway> gateway_;
   hal::sim::SimRobot robot_;
   hal::LinkPort port_;
   link::Sender sender_;
