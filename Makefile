@@ -83,10 +83,11 @@ BENCH = build/$(PRESET)-bench
 bench:
 	@$(INSTALL) quick bench
 	cmake --preset $(PRESET) -B $(BENCH) -DDSEAM_BUILD_BENCH=ON
-	cmake --build $(BENCH) -j $(JOBS) --target core_bench core_growth seam_bench splice_bench
+	cmake --build $(BENCH) -j $(JOBS) --target core_bench core_growth seam_bench set_point_bench splice_bench
 	$(BENCH)/tests/bench/core_bench --benchmark_repetitions=3
 	tests/bench/effort/check_growth.py $(BENCH)/tests/bench/core_growth
 	$(BENCH)/tests/bench/seam_bench
+	$(BENCH)/tests/bench/set_point_bench
 	$(BENCH)/tests/bench/splice_bench
 
 # The paper's Tables 4, 5 and 6 beside the same quantities here: minutes.
