@@ -73,6 +73,7 @@ ExitCode run_calibrate(const CalibrateOptions& options, const Invocation& invoca
   if (!fault.empty()) {
     throw Failure(ExitCode::kInput, options.pairs.string() + ": " + fault);
   }
+  check_scale(result.value().T_flange_camera, options.pairs.string());
   folder.write("hand_eye.json",
                [&](std::ostream& out) { out << hand_eye_json(result.value()).dump(1) << '\n'; });
   folder.commit();

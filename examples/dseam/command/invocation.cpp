@@ -22,7 +22,7 @@ void Invocation::configure(Settings& settings) const {
   if (!seam.empty()) {
     set_key("seam.kind = \"" + seam + '"', keys);
   }
-  check_against_gates(settings);
+  check_together(settings, keys);
 }
 
 }  // namespace dseam::program

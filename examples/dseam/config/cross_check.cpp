@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -12,14 +13,19 @@ namespace {
 /// Collects what does not go together, a line each.
 class Contradictions {
  public:
+  explicit Contradictions(const std::vector<Key>& keys) : keys_(keys) {}
+
   /// `what` is asked for by `key` and allowed by `gate` up to `most`.
   void check(const char* key, double what, const char* gate, double most, const char* unit) {
     if (what > most) {
       char line[256];
       std::snprintf(line, sizeof(line), "%s asks for %.6g %s, but %s allows %.6g %s", key, what,
                     unit, gate, most, unit);
-      text_ += (text_.empty() ? "" : "\n") + std::string(line);
+      add(line);
     }
+  }
+  void add(const std::string& line) {
+    text_ += (text_.empty() ? "" : "\n") + place_of(line) + line;
   }
   void throw_if_any() const {
     if (!text_.empty()) {
@@ -28,8 +34,36 @@ class Contradictions {
   }
 
  private:
+  /// Where the first of the keys that `line` names was set.
+  [[nodiscard]] std::string place_of(const std::string& line) const {
+    const auto set = std::find_if(keys_.begin(), keys_.end(), [&](const Key& key) {
+      return !key.set_at.empty() && line.find(key.path()) != std::string::npos;
+    });
+    return set == keys_.end() ? "" : set->set_at + ": ";
+  }
+
+  const std::vector<Key>& keys_;
   std::string text_;
 };
+
+/// Every key "min_..." stays under the key "max_..." of its section.
+void check_pairs(const std::vector<Key>& keys, Contradictions& found) {
+  for (const Key& low : keys) {
+    const std::size_t at = low.name.find("min_");
+    if (at == std::string::npos) {
+      continue;
+    }
+    std::string twin = low.name;
+    twin.replace(at, 3, "max");
+    for (const Key& high : keys) {
+      const bool pair = high.section == low.section && high.name == twin;
+      if (pair && !(*number(low) < *number(high))) {
+        found.add(low.path() + " is " + value_text(low) + ", which is not less than " +
+                  high.path() + ", " + value_text(high));
+      }
+    }
+  }
+}
 
 void check_motion(const pipeline::MotionChain::Config& motion, const rt::MotionGate::Config& gate,
                   Contradictions& found) {
@@ -66,21 +100,25 @@ void check_standing(const Settings& settings, Contradictions& found) {
               standing_s(path.crater_s, settings), "rt.max_standing_s", most_s, "s");
 }
 
-void check_workspace(const rt::Workspace& box, Contradictions& found) {
-  const std::string axes[] = {"x", "y", "z"};
-  for (int i = 0; i < 3; ++i) {
-    found.check(("rt.workspace_min_" + axes[i] + "_mm").c_str(), box.low_mm[i],
-                ("rt.workspace_max_" + axes[i] + "_mm").c_str(), box.high_mm[i], "mm");
+void check_path(const torch::PathPlanner::Config& path, Contradictions& found) {
+  found.check("path.lead_in_mm", path.lead_in_mm, "path.approach_mm", path.approach_mm, "mm");
+  const torch::Weave& weave = path.passes[0].weave;
+  if (!is_valid(weave)) {
+    found.add("path.weave asks for a motion that path.weave_pitch_mm = " +
+              std::to_string(weave.pitch_mm) + " leaves no room for: at least 0.1 mm");
   }
 }
 
 }  // namespace
 
-void check_against_gates(const Settings& settings) {
-  Contradictions found;
+void check_together(const Settings& settings, const std::vector<Key>& keys) {
+  Contradictions found(keys);
+  check_pairs(keys, found);
+  const pipeline::WeldPipeline::Config& map = settings.pipeline;
+  found.check("map.fine_cell_mm", map.fine_cell_mm, "map.coarse_cell_mm", map.coarse_cell_mm, "mm");
+  check_path(settings.motion.path, found);
   check_motion(settings.motion, settings.session.session.motion, found);
   check_standing(settings, found);
-  check_workspace(settings.session.workspace, found);
   found.throw_if_any();
 }
 

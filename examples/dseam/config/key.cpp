@@ -48,6 +48,16 @@ struct ValueText {
   }
 };
 
+struct NumberOf {
+  std::optional<double> operator()(const bool*) const { return std::nullopt; }
+  std::optional<double> operator()(const std::string*) const { return std::nullopt; }
+  std::optional<double> operator()(const Choice&) const { return std::nullopt; }
+  template <typename T>
+  std::optional<double> operator()(const T* value) const {
+    return static_cast<double>(*value);
+  }
+};
+
 std::string bounds_text(const Key& key) {
   const bool has_min = std::isfinite(key.min);
   const bool has_max = std::isfinite(key.max);
@@ -65,6 +75,8 @@ std::string bounds_text(const Key& key) {
 }
 
 }  // namespace
+
+std::optional<double> number(const Key& key) { return std::visit(NumberOf{}, key.field); }
 
 std::string value_text(const Key& key) { return std::visit(ValueText{}, key.field); }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -31,6 +32,7 @@ struct Key {
   std::string unit = {};
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
+  std::string set_at = {};  ///< The line that set it, as messages show it; empty: the default.
 
   [[nodiscard]] std::string path() const { return section + "." + name; }
 };
@@ -42,6 +44,8 @@ Choice choice(Enum& value, std::vector<std::string> names) {
           [&value](std::size_t i) { value = static_cast<Enum>(i); }};
 }
 
+/// The key's value where that is a number.
+[[nodiscard]] std::optional<double> number(const Key& key);
 /// The key's value as TOML writes it.
 [[nodiscard]] std::string value_text(const Key& key);
 /// What the key allows, for people: "0.2 to 10 mm", "true or false", "a or b".

@@ -25,11 +25,12 @@ class Faults {
  public:
   explicit Faults(std::string file) : file_(std::move(file)) {}
 
-  void add(const toml::node& at, const std::string& what) {
-    add(static_cast<std::size_t>(at.source().begin.line), what);
-  }
+  void add(const toml::node& at, const std::string& what) { add(at.source().begin.line, what); }
   void add(std::size_t line, const std::string& what) {
-    by_line_.emplace(line, file_ + ":" + std::to_string(line) + ": " + what);
+    by_line_.emplace(line, place(line) + ": " + what);
+  }
+  [[nodiscard]] std::string place(std::size_t line) const {
+    return file_ + ":" + std::to_string(line);
   }
   void throw_if_any() const {
     std::string text;
@@ -67,7 +68,8 @@ class Assign {
   template <std::unsigned_integral T>
   bool operator()(T* field) const {
     const auto whole = node_.value_exact<std::int64_t>();
-    if (!whole || !std::in_range<T>(*whole) || !in_range(static_cast<double>(*whole))) {
+    const auto value = static_cast<double>(whole.value_or(-1));
+    if (!whole || !std::in_range<T>(*whole) || value < key_.min || value > key_.max) {
       return false;
     }
     *field = static_cast<T>(*whole);
@@ -126,6 +128,8 @@ void apply_section(std::string_view section, const toml::table& table, std::vect
     } else if (!std::visit(Assign(node, *key), key->field)) {
       faults.add(node, "'" + key->path() + "' cannot be " + shown(node) +
                            "; allowed: " + range_text(*key));
+    } else {
+      key->set_at = faults.place(node.source().begin.line);
     }
   }
 }

@@ -56,9 +56,11 @@ struct Settings {
 /// The table of all keys, bound to `settings`, which must outlive it.
 [[nodiscard]] std::vector<Key> keys_of(Settings& settings);
 
-/// Refuses a plan's limits that the gates of the weld would not let pass, before anything moves.
+/// Refuses what does not go together, before anything is opened: a least value that is not under
+/// its greatest one, a plan that the gates of the weld would not let pass.
 ///
-/// Errors:  throws Failure(kUsage): a line for each contradiction, with the names of both keys.
-void check_against_gates(const Settings& settings);
+/// Errors:  throws Failure(kUsage): a line for each contradiction, with the names of both keys and
+///          the place where one of them was set.
+void check_together(const Settings& settings, const std::vector<Key>& keys);
 
 }  // namespace dseam::program

@@ -18,6 +18,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// A camera on a flange is some hundredths of a metre away from its centre at least.
+constexpr double kNearestMm = 2.0;
+
 std::string utc_now() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   std::tm parts = {};
@@ -74,6 +77,13 @@ bool is_unit(const nlohmann::json& units, const char* of, const char* unit) {
 
 }  // namespace
 
+void check_scale(const geometry::RigidTransform& T_flange_camera, const std::string& where) {
+  if (T_flange_camera.translation_mm.norm() < kNearestMm) {
+    throw Failure(ExitCode::kInput,
+                  where + ": the camera lies within 2 mm of the flange's centre: in metres?");
+  }
+}
+
 HandEyeFile read_hand_eye(const std::filesystem::path& file) {
   return parse_hand_eye(read_bytes(file), file.string());
 }
@@ -96,7 +106,10 @@ HandEyeFile parse_hand_eye(const std::string& bytes, const std::string& name) {
       expected["tool_mm"].get<double>() < 0.0) {
     fail("no expected_error.tool_mm");
   }
-  return {rigid_at(content, "T_flange_camera", name), expected["tool_mm"].get<double>()};
+  const HandEyeFile file{rigid_at(content, "T_flange_camera", name),
+                         expected["tool_mm"].get<double>()};
+  check_scale(file.T_flange_camera, name);
+  return file;
 }
 
 }  // namespace dseam::program

@@ -96,5 +96,18 @@ TEST_F(CalibrateTest, targets_in_metres_are_named) {
   expect_refused(pairs.dump(), "another unit");
 }
 
+TEST_F(CalibrateTest, a_whole_calibration_in_metres_is_named) {
+  nlohmann::json pairs = true_pairs();
+  for (nlohmann::json& pair : pairs) {
+    for (const char* pose : {"T_base_flange", "T_camera_target"}) {
+      for (const std::size_t i : {3U, 7U, 11U}) {
+        pair[pose][i] = pair[pose][i].get<double>() / 1000.0;
+      }
+    }
+  }
+
+  expect_refused(pairs.dump(), "in metres?");
+}
+
 }  // namespace
 }  // namespace dseam::program

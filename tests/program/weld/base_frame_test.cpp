@@ -44,6 +44,19 @@ TEST(BaseFrame, without_any_robot_pose_no_robot_is_driven) {
   EXPECT_EQ(scratch.names_in("out").count("can.log"), 0U);
 }
 
+TEST(RefusedSeam, drives_no_robot) {
+  const test::ScratchFolder scratch;
+
+  const Outcome outcome = run_program({"weld", "--camera", "sim", "--robot", "sim", "--set",
+                                       "cell.width=324", "--set", "cell.height=242", "--set",
+                                       "cell.unseen_share=0.3", "--out", scratch.path("out")});
+
+  EXPECT_EQ(outcome.exit_code, 4) << outcome.text;
+  EXPECT_EQ(outcome.text.find("set points sent"), std::string::npos) << outcome.text;
+  EXPECT_EQ(scratch.names_in("out").count("can.log"), 0U);
+  EXPECT_EQ(scratch.names_in("out").count("report.json"), 1U);
+}
+
 TEST(BaseFrame, a_hand_eye_calibration_that_no_view_could_use_is_not_ignored) {
   const test::ScratchFolder scratch;
   const std::string set = set_without_poses(scratch);
