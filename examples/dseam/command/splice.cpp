@@ -62,7 +62,8 @@ ExitCode splice_set(const SpliceOptions& options, const Invocation& invocation) 
   job.reason = std::to_string(used) + " of " + std::to_string(views.size()) + " views spliced";
   write_products(job, folder);
   print_summary(job, folder);
-  return used > 0 ? ExitCode::kDone : ExitCode::kRefused;
+  // One view of several is not spliced to anything.
+  return used > 1 || used == views.size() ? ExitCode::kDone : ExitCode::kRefused;
 }
 
 }  // namespace
