@@ -160,8 +160,8 @@ bool SeamChain::find_edges(const SeamInput& in, seam::SeamReport& report) noexce
     found_.shell = &shell;
   } else if (!scan_edge(in, Which::kNozzle, report)) {
     return false;
-  } else if (nozzle.fit(edges_.intervals(), edges_.smear_mm()) &&
-             seam::describe_mismatch(nozzle, report.joint)) {
+  } else if (nozzle.fit(edges_.intervals()) && seam::describe_mismatch(nozzle, report.joint)) {
+    // Under a nozzle's end the shell is near: lines go down by and by there without any smear.
     found_.nozzle = &nozzle;
   }
   report.refusal = has(report.reference) ? Refusal::kNone : Refusal::kNoSuchReference;
