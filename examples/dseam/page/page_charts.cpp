@@ -135,7 +135,7 @@ std::string charts(const JobReport& job) {
     out += figure(gap_chart(job.seam_base), "Between the shell's edge and the nozzle");
   }
   if (!job.path.empty() && job.path.back().t_us > 0) {
-    out += figure(speed_chart(job.path), "The path as it was sent");
+    out += figure(speed_chart(job.path), "Speed of the torch along the path");
   }
   return out + "</div>\n<p class=\"soft\">Pink: not measured, bridged by the model.</p>\n";
 }
