@@ -85,7 +85,7 @@ bench:
 	cmake --preset $(PRESET) -B $(BENCH) -DDSEAM_BUILD_BENCH=ON
 	cmake --build $(BENCH) -j $(JOBS) --target core_bench core_growth seam_bench set_point_bench splice_bench
 	$(BENCH)/tests/bench/core_bench --benchmark_repetitions=3
-	tests/bench/effort/check_growth.py $(BENCH)/tests/bench/core_growth
+	tests/bench/check_growth.py $(BENCH)/tests/bench/core_growth
 	$(BENCH)/tests/bench/seam_bench
 	$(BENCH)/tests/bench/set_point_bench
 	$(BENCH)/tests/bench/splice_bench
@@ -102,7 +102,7 @@ check-long: build
 	@$(INSTALL) vm bench
 	ctest --preset $(PRESET) -L long
 	cmake --preset $(PRESET) -B $(BENCH) -DDSEAM_BUILD_BENCH=ON
-	cmake --build $(BENCH) -j $(JOBS) --target core_oracle core_effort core_growth
+	cmake --build $(BENCH) -j $(JOBS) --target core_oracle core_growth
 	ctest --test-dir $(BENCH) --output-on-failure -R '^bench[.]'
 
 test-vm: build

@@ -5,10 +5,11 @@
 set -euo pipefail
 
 declare -A packages=(
-  # make demo, make test. spin checks the models, tshark and the python packages the dictionary.
+  # make demo, make test. spin checks the models, tshark and the python packages the dictionary,
+  # valgrind counts instructions.
   [quick]="binutils cmake g++ ninja-build pkg-config libeigen3-dev libgtest-dev libcli11-dev
            libtomlplusplus-dev nlohmann-json3-dev libspng-dev libpng-dev libboost-dev
-           libaravis-dev libusb-1.0-0-dev spin python3 python3-canmatrix python3-can tshark"
+           libaravis-dev libusb-1.0-0-dev spin python3 python3-canmatrix python3-can tshark valgrind"
   # make check: the second compiler, format and lint
   [check]="clang-14 clang-format-14 clang-tidy-14"
   # make cross: aarch64 under an emulator, bare-metal Cortex-M7

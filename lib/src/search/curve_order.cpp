@@ -145,32 +145,6 @@ IntLanes keys_of(const Grid& grid, const EightPoints& p) noexcept {
   return shift_left<2>(spread(axes.x)) | shift_left<1>(spread(axes.y)) | spread(axes.z);
 }
 
-// Each to where as many lie before it as have lesser keys: eight at a time, and for few fewer steps
-// than a sort takes, the same ones whatever the keys.
-void sort_by_rank(std::span<const CurvePlace> from, CurvePlace* to) noexcept {
-  alignas(32) std::int32_t keys[kSmallRun + kLanes];
-  alignas(32) std::int32_t ranks[kSmallRun + kLanes];
-  std::uint8_t equal_before[kSmallRun];
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    keys[i] = static_cast<std::int32_t>(from[i].key);
-  }
-  std::fill_n(keys + from.size(), kLanes, std::numeric_limits<std::int32_t>::max());
-  for (std::size_t i = 0; i < from.size(); i += kLanes) {
-    const IntLanes own = load(&keys[i]);
-    const auto is_less = [&](std::size_t j) noexcept { return splat(keys[j]) < own; };
-    IntLanes rank = splat(0);  // A mask that is set counts as -1.
-    for (std::size_t j = 0; j < from.size(); j += 4) {
-      rank = rank - is_less(j) - is_less(j + 1) - is_less(j + 2) - is_less(j + 3);
-    }
-    store(rank, &ranks[i]);
-  }
-  std::fill_n(equal_before, from.size(), std::uint8_t{0});
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    const auto rank = static_cast<std::size_t>(ranks[i]);
-    to[rank + equal_before[rank]++] = from[i];
-  }
-}
-
 std::uint32_t digit_of(std::uint32_t key, std::size_t digit) noexcept {
   return (key >> (kBitsPerDigit * digit)) % kPlacesPerDigit;
 }
@@ -202,6 +176,36 @@ void radix_sort(std::span<CurvePlace> from, std::span<CurvePlace> to,
   }
 }
 
+// Each to where as many lie before it as have lesser keys: eight at a time, and for few fewer steps
+// than a sort takes, the same ones whatever the keys.
+template <typename EightFrom>
+void sort_by_rank(const Grid& grid, std::span<CurvePlace> places, CurvePlace* spare,
+                  const EightFrom& eight_from) noexcept {
+  alignas(32) std::int32_t keys[kSmallRun + kLanes];
+  alignas(32) std::int32_t ranks[kSmallRun + kLanes];
+  std::uint8_t equal_before[kSmallRun];
+  const std::size_t size = places.size();
+  for (std::size_t i = 0; i < size; i += kLanes) {
+    store(keys_of(grid, eight_from(i)), &keys[i]);
+  }
+  std::fill_n(keys + size, kLanes, std::numeric_limits<std::int32_t>::max());
+  for (std::size_t i = 0; i < size; i += kLanes) {
+    const IntLanes own = load(&keys[i]);
+    const auto is_less = [&](std::size_t j) noexcept { return splat(keys[j]) < own; };
+    IntLanes rank = splat(0);  // A mask that is set counts as -1.
+    for (std::size_t j = 0; j < size; j += 4) {
+      rank = rank - is_less(j) - is_less(j + 1) - is_less(j + 2) - is_less(j + 3);
+    }
+    store(rank, &ranks[i]);
+  }
+  std::copy_n(places.begin(), size, spare);
+  std::fill_n(equal_before, size, std::uint8_t{0});
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto rank = static_cast<std::size_t>(ranks[i]);
+    places[rank + equal_before[rank]++] = {static_cast<std::uint32_t>(keys[i]), spare[i].index};
+  }
+}
+
 // False when all points are identical.
 template <typename EightFrom>
 bool sort_over_grid(std::span<CurvePlace> places, std::span<CurvePlace> spare,
@@ -211,6 +215,10 @@ bool sort_over_grid(std::span<CurvePlace> places, std::span<CurvePlace> spare,
     return false;
   }
   spare = spare.first(places.size());
+  if (places.size() <= kSmallRun) {
+    sort_by_rank(grid, places, spare.data(), eight_from);
+    return true;
+  }
   for (std::size_t i = 0; i < places.size(); i += kLanes) {
     alignas(32) std::int32_t keys[kLanes];
     store(keys_of(grid, eight_from(i)), keys);
@@ -218,11 +226,7 @@ bool sort_over_grid(std::span<CurvePlace> places, std::span<CurvePlace> spare,
       spare[i + j] = {static_cast<std::uint32_t>(keys[j]), places[i + j].index};
     }
   }
-  if (places.size() <= kSmallRun) {
-    sort_by_rank(spare, places.data());
-  } else {
-    radix_sort(spare, places, counters);
-  }
+  radix_sort(spare, places, counters);
   return true;
 }
 

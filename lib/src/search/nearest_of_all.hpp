@@ -34,7 +34,6 @@ class NearestOfAll {
         continue;
       }
       const bool fits = collect(block);
-      crowded_ = false;
       for (std::uint32_t at = CellTree::first_of(block); at < tree_.end_of(block); ++at) {
         const Cell& cell = tree_.cells()[at];
         const QueryCell query(cell);
@@ -79,6 +78,7 @@ class NearestOfAll {
       boxes.set(i, groups_[i].box);
       around = both(around, groups_[i].box);
     }
+    crowded_ = false;
     near_mm2_ = guess_mm2_;
     reach_mm2_ = kWiden * guess_mm2_;
     return near_.collect(block, boxes, around, reach_mm2_);
@@ -248,16 +248,28 @@ class NearestOfAll {
     return box.low_x == box.high_x && box.low_y == box.high_y && box.low_z == box.high_z;
   }
 
-  // All eight at once; `best` knows its own cell.
+  // All eight at once; `best` knows its own cell. Each of the eight has its say on whole blocks
+  // first: their box may reach across a surface that none of them is near to.
   void look_through_tree(std::uint32_t at, const QueryCell& query, Best& best) noexcept {
+    const Box box = tree_.box_of(at);
     Reach reach = best.reach(k_);
     const auto reach_of = [&]() noexcept { return reach; };
-    tree_.visit_around(at, tree_.box_of(at), reach_of, [&](std::uint32_t other) noexcept {
-      if (other != at && best.may_take(query, tree_.box_of(other), k_)) {
-        best.insert_cell(query, tree_.cells()[other]);
-        reach = best.reach(k_);
+    const auto may_take = [&](const Box& its) noexcept { return best.may_take(query, its, k_); };
+    const auto visit = [&](std::uint32_t block) noexcept {
+      if (!may_take(tree_.box_of_block(block))) {
+        return;
       }
-    });
+      std::uint32_t cells = tree_.near_cells(block, box, reach.squared_mm2);
+      for (; cells != 0; cells &= cells - 1) {
+        const std::uint32_t other =
+            CellTree::first_of(block) + static_cast<std::uint32_t>(std::countr_zero(cells));
+        if (other != at && may_take(tree_.box_of(other))) {
+          best.insert_cell(query, tree_.cells()[other]);
+          reach = best.reach(k_);
+        }
+      }
+    };
+    tree_.visit_blocks_around(CellTree::block_of(at), box, reach_of, visit);
   }
 
   static constexpr float kFar = std::numeric_limits<float>::max();
