@@ -14,20 +14,21 @@ using lanes::kLanes;
 using search::CellKey;
 using search::VoxelHash;
 
-// The axes of a cell go through the same arithmetic side by side; the fourth place is idle.
+// The axes of a cell go through the same arithmetic side by side; the fourth place is idle. They
+// are never returned: how 32 bytes come back from a function depends on the processor's extensions.
 typedef double Axes __attribute__((vector_size(32)));
 typedef std::uint64_t AxisWords __attribute__((vector_size(32)));
 
 // Of whole numbers under 2^52, as those in the low bits of 2^52: exact, and no processor lacks it.
-[[gnu::always_inline]] inline Axes to_doubles(const AxisWords& whole) noexcept {
+[[gnu::always_inline]] inline void to_doubles(const AxisWords& whole, Axes& out) noexcept {
   constexpr double kBase = 4503599627370496.0;
-  return reinterpret_cast<Axes>(whole | std::bit_cast<std::uint64_t>(kBase)) - kBase;
+  out = reinterpret_cast<Axes>(whole | std::bit_cast<std::uint64_t>(kBase)) - kBase;
 }
 
-[[gnu::always_inline]] inline AxisWords cells_of(CellKey key) noexcept {
+[[gnu::always_inline]] inline void cells_of(CellKey key, Axes& out) noexcept {
   constexpr AxisWords kShifts = {0, CellKey::kAxisBits, 2 * CellKey::kAxisBits, 0};
   const AxisWords keys = {key.bits, key.bits, key.bits, 0};
-  return (keys >> kShifts) & ((std::uint64_t{1} << CellKey::kAxisBits) - 1);
+  to_doubles((keys >> kShifts) & ((std::uint64_t{1} << CellKey::kAxisBits) - 1), out);
 }
 
 bool is_finite(geometry::Vec3f p) noexcept {
@@ -138,9 +139,12 @@ FusedCloudView VoxelMap::view() noexcept {
   centroids_.resize(size());
   for (std::size_t i = 0; i < size(); ++i) {
     const Sum& sum = sums_[i];
-    const Axes cell = to_doubles(cells_of(hash_.keys()[i])) - static_cast<double>(kMaxAxis);
-    const AxisWords steps = {sum.x, sum.y, sum.z, 0};
-    const Axes inside_mm = to_doubles(steps) / static_cast<double>(sum.count) * step_mm;
+    Axes cell;
+    Axes steps;
+    cells_of(hash_.keys()[i], cell);
+    to_doubles(AxisWords{sum.x, sum.y, sum.z, 0}, steps);
+    cell -= static_cast<double>(kMaxAxis);
+    const Axes inside_mm = steps / static_cast<double>(sum.count) * step_mm;
     const Axes mm = origin_mm + cell * static_cast<double>(config_.cell_mm) + inside_mm;
     centroids_.set(
         i, {static_cast<float>(mm[0]), static_cast<float>(mm[1]), static_cast<float>(mm[2])});
