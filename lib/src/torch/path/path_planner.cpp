@@ -78,6 +78,33 @@ bool resume_in(const Resume& resume, std::uint8_t pass, Bead& bead) noexcept {
   return true;
 }
 
+/// With its overlap, on a closed curve.
+double pass_length_mm(const PathPlanner::Config& config, const TorchCurve& curve) noexcept {
+  if (!curve.closed()) {
+    return curve.length_mm();
+  }
+  const double share = config.overlap_rad / (2.0 * std::numbers::pi);
+  return curve.length_mm() + (share > 0.0 ? share * curve.length_mm() : config.overlap_mm);
+}
+
+/// False when no stretch of the pass may be welded.
+bool write_pass(const PathPlanner::Config& config, const TorchCurve& curve, std::uint8_t pass,
+                BeadWriter& beads, PathPlanner::Report& report) noexcept {
+  beads.begin_pass(pass);
+  const double length_mm = pass_length_mm(config, curve);
+  double weldable_mm = 0.0;
+  Bead bead;
+  for (double x = 0.0; next_bead(config, curve, beads.pass_start_mm(), length_mm, x, bead);
+       bead = {}) {
+    weldable_mm += bead.end_mm - bead.begin_mm;
+    if (resume_in(config.resume, pass, bead)) {
+      beads.write(bead);
+    }
+  }
+  report.skipped_mm += length_mm - weldable_mm;
+  return weldable_mm > 0.0;
+}
+
 }  // namespace
 
 Result<PathPlanner> PathPlanner::make(const Config& config) noexcept {
@@ -110,28 +137,15 @@ PathPlanner::Report PathPlanner::plan(const TorchPose* now, const TorchCurveView
   const TorchCurve curve(view);
   BeadWriter beads(config_, curve, now, writer, report);
   const std::uint8_t first = config_.resume.active ? config_.resume.pass : std::uint8_t{0};
-  bool seen = false;
+  bool weldable = first >= config_.num_passes;
   for (std::uint8_t pass = first; pass < config_.num_passes; ++pass) {
-    beads.begin_pass(pass);
-    const double overlap_mm = config_.overlap_rad > 0.0
-                                  ? config_.overlap_rad / (2.0 * std::numbers::pi) * view.length_mm
-                                  : config_.overlap_mm;
-    const double length_mm = view.length_mm + (view.closed ? overlap_mm : 0.0);
-    double welded_mm = 0.0;
-    Bead bead;
-    for (double x = 0.0; next_bead(config_, curve, beads.pass_start_mm(), length_mm, x, bead);
-         bead = {}) {
-      seen = true;
-      welded_mm += bead.end_mm - bead.begin_mm;
-      if (resume_in(config_.resume, pass, bead)) {
-        beads.write(bead);
-      }
-    }
-    report.skipped_mm += length_mm - welded_mm;
+    weldable = write_pass(config_, curve, pass, beads, report) || weldable;
   }
-  report.state = report.beads > 0 ? State::kPlanned
-                                  : (seen || first >= config_.num_passes ? State::kNothingLeft
-                                                                         : State::kNothingWeldable);
+  if (report.beads > 0) {
+    report.state = State::kPlanned;
+  } else {
+    report.state = weldable ? State::kNothingLeft : State::kNothingWeldable;
+  }
   if (writer.full()) {
     out.clear();
     report.state = State::kFull;
