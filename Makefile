@@ -7,7 +7,7 @@ PRESET ?= $(if $(filter 1,$(V3)),host-release,host-baseline)
 JOBS ?= $(shell nproc)
 OUT ?= out/demo
 BUILD = build/$(PRESET)
-THREADED = rt_core_test rt_linux_test candump_test socketcan_test fake_camera_test \
+THREADED = rt_core_test rt_linux_test rt_session_test candump_test socketcan_test fake_camera_test \
   aravis_multipart_test aravis_fault_sweep_test
 CYCLE = rt_core_test rt_session_test link_test
 INSTALL = cmake/install_packages.sh
