@@ -65,6 +65,22 @@ void check_pairs(const std::vector<Key>& keys, Contradictions& found) {
   }
 }
 
+/// No list is longer than what its numbers are for.
+void check_lists(const std::vector<Key>& keys, Contradictions& found) {
+  for (const Key& key : keys) {
+    const auto* list = std::get_if<Series>(&key.field);
+    if (list == nullptr || list->told() <= std::max<std::size_t>(1, *list->in_use)) {
+      continue;
+    }
+    const auto count = std::find_if(keys.begin(), keys.end(), [list](const Key& other) {
+      const auto* const* number = std::get_if<std::uint8_t*>(&other.field);
+      return number != nullptr && *number == list->in_use;
+    });
+    found.add(key.path() + " is " + value_text(key) + ", a list longer than " + count->path() +
+              ", " + value_text(*count));
+  }
+}
+
 void check_motion(const pipeline::MotionChain::Config& motion, const rt::MotionGate::Config& gate,
                   Contradictions& found) {
   const trajectory::Limits& robot = motion.limits;
@@ -88,7 +104,12 @@ void check_motion(const pipeline::MotionChain::Config& motion, const rt::MotionG
 double standing_s(double dwell_s, const Settings& settings) {
   const double way_mm = settings.session.session.tracker.standing_mm;
   const double ramp_s = std::sqrt(2.0 * way_mm / settings.motion.limits.acceleration_mm_s2);
-  return dwell_s + 2.0 * way_mm / settings.motion.path.passes[0].speed_mm_s + ramp_s;
+  const auto& passes = settings.motion.path.passes;
+  double least_mm_s = passes[0].speed_mm_s;
+  for (std::size_t i = 1; i < settings.motion.path.num_passes; ++i) {
+    least_mm_s = std::min(least_mm_s, passes[i].speed_mm_s);
+  }
+  return dwell_s + 2.0 * way_mm / least_mm_s + ramp_s;
 }
 
 void check_standing(const Settings& settings, Contradictions& found) {
@@ -102,10 +123,43 @@ void check_standing(const Settings& settings, Contradictions& found) {
 
 void check_path(const torch::PathPlanner::Config& path, Contradictions& found) {
   found.check("path.lead_in_mm", path.lead_in_mm, "path.approach_mm", path.approach_mm, "mm");
-  const torch::Weave& weave = path.passes[0].weave;
-  if (!is_valid(weave)) {
-    found.add("path.weave asks for a motion that path.weave_pitch_mm = " +
-              std::to_string(weave.pitch_mm) + " leaves no room for: at least 0.1 mm");
+  for (std::size_t i = 0; i < path.num_passes; ++i) {
+    const torch::Weave& weave = path.passes[i].weave;
+    if (!is_valid(weave)) {
+      found.add("path.weave asks for a motion that path.weave_pitch_mm = " +
+                std::to_string(weave.pitch_mm) +
+                " leaves no room for: at least 0.1 mm, and path.weave_dwell_left_mm with "
+                "path.weave_dwell_right_mm at most 0.8 of it");
+      return;
+    }
+  }
+}
+
+/// What is counted from 0 names one that there is.
+void check_counted(const pipeline::MotionChain::Config& motion, Contradictions& found) {
+  const torch::PathPlanner::Config& path = motion.path;
+  const auto check = [&found](const char* key, std::uint8_t index, const char* count_key,
+                              std::uint8_t count) {
+    if (index >= count) {
+      found.add(std::string(key) + " names number " + std::to_string(index) +
+                ", counted from 0, but " + count_key + " is " + std::to_string(count));
+    }
+  };
+  for (std::size_t i = 0; i < path.num_passes; ++i) {
+    check("path.pass_schedule", path.passes[i].schedule, "weld.schedules", motion.table.num_rows);
+    check("path.pass_crater_schedule", path.passes[i].crater_schedule, "weld.schedules",
+          motion.table.num_rows);
+  }
+  for (std::size_t i = 0; i < path.num_sectors; ++i) {
+    check("path.sector_pass", path.sectors[i].pass, "path.passes", path.num_passes);
+    check("path.sector_schedule", path.sectors[i].schedule, "weld.schedules",
+          motion.table.num_rows);
+  }
+  if (path.num_sectors == 0 && (path.sectors[0].from_mm > 0.0 || path.sectors[0].to_mm > 0.0)) {
+    found.add("path.sector_from_mm and path.sector_to_mm name a stretch, but path.sectors is 0");
+  }
+  if (path.resume.active) {
+    check("resume.pass", path.resume.pass, "path.passes", path.num_passes);
   }
 }
 
@@ -117,6 +171,8 @@ void check_together(const Settings& settings, const std::vector<Key>& keys) {
   const pipeline::WeldPipeline::Config& map = settings.pipeline;
   found.check("map.fine_cell_mm", map.fine_cell_mm, "map.coarse_cell_mm", map.coarse_cell_mm, "mm");
   check_path(settings.motion.path, found);
+  check_lists(keys, found);
+  check_counted(settings.motion, found);
   check_motion(settings.motion, settings.session.session.motion, found);
   check_standing(settings, found);
   found.throw_if_any();

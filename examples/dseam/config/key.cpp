@@ -34,10 +34,24 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
+std::string series_text(const Series& series) {
+  const auto item = [&series](std::size_t i) {
+    const double value = series.get(i);
+    return series.whole ? std::to_string(std::llround(value)) : number_text(value);
+  };
+  const std::size_t told = series.told();
+  std::string text = item(0);
+  for (std::size_t i = 1; i < told; ++i) {
+    text += ", " + item(i);
+  }
+  return told == 1 ? text : '[' + text + ']';
+}
+
 struct ValueText {
   std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
   std::string operator()(const std::string* value) const { return '"' + *value + '"'; }
   std::string operator()(const Choice& value) const { return '"' + value.names[value.get()] + '"'; }
+  std::string operator()(const Series& value) const { return series_text(value); }
   template <std::unsigned_integral T>
   std::string operator()(const T* value) const {
     return std::to_string(*value);
@@ -52,6 +66,7 @@ struct NumberOf {
   std::optional<double> operator()(const bool*) const { return std::nullopt; }
   std::optional<double> operator()(const std::string*) const { return std::nullopt; }
   std::optional<double> operator()(const Choice&) const { return std::nullopt; }
+  std::optional<double> operator()(const Series&) const { return std::nullopt; }
   template <typename T>
   std::optional<double> operator()(const T* value) const {
     return static_cast<double>(*value);
@@ -76,6 +91,14 @@ std::string bounds_text(const Key& key) {
 
 }  // namespace
 
+std::size_t Series::told() const {
+  std::size_t count = size;
+  while (count > 1 && get(count - 1) == get(count - 2)) {
+    --count;
+  }
+  return count;
+}
+
 std::optional<double> number(const Key& key) { return std::visit(NumberOf{}, key.field); }
 
 std::string value_text(const Key& key) { return std::visit(ValueText{}, key.field); }
@@ -89,6 +112,9 @@ std::string range_text(const Key& key) {
   }
   if (std::holds_alternative<std::string*>(key.field)) {
     return "a text";
+  }
+  if (const auto* series = std::get_if<Series>(&key.field)) {
+    return bounds_text(key) + ", or a list of up to " + std::to_string(series->size);
   }
   return bounds_text(key);
 }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -18,10 +21,23 @@ struct Choice {
   std::function<void(std::size_t)> set;
 };
 
+/// A number for each of several things of a kind, such as the passes. The file gives a list, whose
+/// last number holds for all that follow, or one number for all of them.
+struct Series {
+  std::size_t size;  ///< The longest list.
+  bool whole;        ///< No fractions.
+  std::function<double(std::size_t)> get;
+  std::function<void(std::size_t, double)> set;
+  const std::uint8_t* in_use;  ///< How many there are.
+
+  /// How many numbers say it all.
+  [[nodiscard]] std::size_t told() const;
+};
+
 /// Where the value of a key lives: in the very struct that a stage is made from, so that its
 /// default is the stage's own and stands nowhere twice.
-using Field = std::variant<bool*, double*, float*, std::uint16_t*, std::uint32_t*, std::uint64_t*,
-                           std::string*, Choice>;
+using Field = std::variant<bool*, double*, float*, std::uint8_t*, std::uint16_t*, std::uint32_t*,
+                           std::uint64_t*, std::string*, Choice, Series>;
 
 /// One key of the configuration file: the only place that knows its name, range and meaning.
 struct Key {
@@ -44,7 +60,21 @@ Choice choice(Enum& value, std::vector<std::string> names) {
           [&value](std::size_t i) { value = static_cast<Enum>(i); }};
 }
 
-/// The key's value where that is a number.
+/// One member of each item, of which `in_use` count; `place` finds it: a pointer to the member, or
+/// a function that returns a reference.
+template <typename Item, std::size_t kSize, typename Place>
+Series series(std::array<Item, kSize>& items, const std::uint8_t& in_use, Place place) {
+  using Number = std::remove_cvref_t<std::invoke_result_t<Place, Item&>>;
+  return {
+      kSize, std::is_integral_v<Number>,
+      [&items, place](std::size_t i) { return static_cast<double>(std::invoke(place, items[i])); },
+      [&items, place](std::size_t i, double value) {
+        std::invoke(place, items[i]) = static_cast<Number>(value);
+      },
+      &in_use};
+}
+
+/// The key's value where that is a single number.
 [[nodiscard]] std::optional<double> number(const Key& key);
 /// The key's value as TOML writes it.
 [[nodiscard]] std::string value_text(const Key& key);

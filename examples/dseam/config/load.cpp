@@ -77,13 +77,27 @@ class Assign {
   }
   template <std::floating_point T>
   bool operator()(T* field) const {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    const bool number = node_.is_floating_point() || node_.is_integer();
-    const double value = number ? node_.value<double>().value_or(kNan) : kNan;
-    if (!std::isfinite(value) || !in_range(value)) {
+    const double value = number_in(node_);
+    if (!in_range(value)) {
       return false;
     }
     *field = static_cast<T>(value);
+    return true;
+  }
+  bool operator()(const Series& field) const {
+    const toml::array* list = node_.as_array();
+    const std::size_t given = list == nullptr ? 1 : list->size();
+    if (given == 0 || given > field.size) {
+      return false;
+    }
+    for (std::size_t i = 0; i < field.size; ++i) {
+      const toml::node& item = list == nullptr ? node_ : (*list)[std::min(i, given - 1)];
+      const double value = number_in(item);
+      if (!in_range(value) || (field.whole && !item.is_integer())) {
+        return false;
+      }
+      field.set(i, value);
+    }
     return true;
   }
 
@@ -95,10 +109,16 @@ class Assign {
     }
     return value.has_value();
   }
+  /// NaN where it is none.
+  static double number_in(const toml::node& node) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    const bool number = node.is_floating_point() || node.is_integer();
+    return number ? node.value<double>().value_or(kNan) : kNan;
+  }
   // A float's own default may lie half a digit outside a bound that is exact in double.
   [[nodiscard]] bool in_range(double value) const {
     const double slack = 1e-6 * std::abs(value);
-    return value >= key_.min - slack && value <= key_.max + slack;
+    return std::isfinite(value) && value >= key_.min - slack && value <= key_.max + slack;
   }
 
   const toml::node& node_;

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/motion_job.hpp"
 
+#include <algorithm>
+
 #include "failure.hpp"
 
 namespace dseam::program {
 
 MotionJob::MotionJob(const Settings& settings, const seam::SeamView& seam_base)
-    : seam_base_(seam_base) {
+    : seam_base_(seam_base), path_(settings.motion.path) {
   pipeline::MotionChain::Capacity capacity;
   capacity.max_seam_points = settings.max_seam_points;
   memory_ = std::make_unique<LentMemory>(pipeline::MotionChain::bytes(capacity));
@@ -38,6 +40,12 @@ trajectory::SetPointView MotionJob::sample() {
   return points_;
 }
 
+std::optional<BrokenBead> MotionJob::broken_after(std::size_t executed) const {
+  const torch::TorchCurveView curve{chain_->torch_points(), report_.torch.length_mm,
+                                    seam_base_.closed};
+  return broken_bead(points().first(std::min(executed, points_.size())), curve, path_);
+}
+
 std::string MotionJob::why() const {
   using Torch = torch::TorchPlanner::State;
   using Path = torch::PathPlanner::State;
@@ -49,6 +57,9 @@ std::string MotionJob::why() const {
   }
   if (report_.path.state == Path::kStartTooFar) {
     return "the torch stands too far from the seam (path.max_start_mm)";
+  }
+  if (report_.path.state == Path::kNothingLeft) {
+    return "nothing is left to weld past resume.stopped_mm";
   }
   return report_.planned() ? "" : "no path within the robot's limits";
 }

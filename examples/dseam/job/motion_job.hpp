@@ -6,6 +6,7 @@
 
 #include "config/settings.hpp"
 #include "dseam/pipeline/motion_chain.hpp"
+#include "job/broken_bead.hpp"
 #include "job/lent_memory.hpp"
 
 namespace dseam::program {
@@ -21,6 +22,8 @@ class MotionJob {
   /// Plans from where the torch stands.
   trajectory::SetPointView plan_from(const torch::TorchPose& now);
   [[nodiscard]] std::string why() const;
+  /// Where the arc went off when the robot ended after so many of the set points.
+  [[nodiscard]] std::optional<BrokenBead> broken_after(std::size_t executed) const;
   [[nodiscard]] trajectory::SetPointView points() const { return points_; }
   [[nodiscard]] const pipeline::MotionChain::Report& report() const { return report_; }
 
@@ -28,6 +31,7 @@ class MotionJob {
   trajectory::SetPointView sample();
 
   seam::SeamView seam_base_;
+  torch::PathPlanner::Config path_;
   std::unique_ptr<LentMemory> memory_;
   std::unique_ptr<pipeline::MotionChain> chain_;
   pipeline::MotionChain::Report report_;

@@ -160,6 +160,10 @@ DriveReport drive_robot(const std::string& robot, bool waive_operator,
   report.finished = outcome.finished;
   report.fault = outcome.finished ? "" : fault_of(outcome);
   add_facts(outcome, *side, weld.times(), report);
+  const auto broken = motion.broken_after(outcome.executed);
+  if (!outcome.finished && broken) {
+    report.facts.emplace_back("to take the bead up again", broken->resume_options());
+  }
   return report;
 }
 

@@ -59,6 +59,7 @@ WeldOutcome WeldRun::run(const Planner& plan, const Progress& progress) {
   outcome.interrupted = interrupted_;
   outcome.released = released_;
   outcome.fault = session_.fault();
+  outcome.executed = sender_.executed();
   outcome.health = session_.health();
   outcome.link = sender_.report();
   return outcome;

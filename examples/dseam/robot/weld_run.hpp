@@ -18,6 +18,7 @@ struct WeldOutcome {
   bool interrupted = false;
   bool released = false;  ///< The operator took the enable back.
   rt::Fault fault = rt::Fault::kNone;
+  std::size_t executed = 0;  ///< Set points, by the robot's newest status.
   rt::Health health;
   link::Sender::Report link;
 };

@@ -30,10 +30,16 @@ std::string digits(double value) {
 }
 
 bool is_whole(const Key& key) {
-  return std::holds_alternative<std::uint16_t*>(key.field) ||
+  const auto* series = std::get_if<Series>(&key.field);
+  return (series != nullptr && series->whole) || std::holds_alternative<std::uint8_t*>(key.field) ||
+         std::holds_alternative<std::uint16_t*>(key.field) ||
          std::holds_alternative<std::uint32_t*>(key.field) ||
          std::holds_alternative<std::uint64_t*>(key.field);
 }
+
+bool is_series(const Key& key) { return std::holds_alternative<Series>(key.field); }
+
+bool is_numeric(const Key& key) { return number(key) || is_series(key); }
 
 void add_numbers(const Key& key, std::vector<BadValue>& bad) {
   const auto text = [&](double value) {
@@ -51,11 +57,33 @@ void add_numbers(const Key& key, std::vector<BadValue>& bad) {
   }
 }
 
+/// What is wrong for one number is wrong for any of a list.
+void add_lists(const Key& key, std::vector<BadValue>& bad) {
+  const std::size_t numbers = bad.size();
+  const std::string good = is_whole(key) ? "1" : "1.0";
+  for (std::size_t i = 0; i < numbers; ++i) {
+    bad.push_back({"one of a list", "[" + good + ", " + bad[i].value + "]"});
+  }
+  std::string longer = good;
+  for (std::size_t i = 0; i < std::get<Series>(key.field).size; ++i) {
+    longer += ", " + good;
+  }
+  bad.push_back({"a list that is too long", "[" + longer + "]"});
+  bad.push_back({"an empty list", "[]"});
+  bad.push_back({"a list of lists", "[[1]]"});
+}
+
 std::vector<BadValue> bad_values(const Key& key) {
-  std::vector<BadValue> bad = {{"no number", "nan"}, {"a list", "[1]"}, {"a section", "{ x = 1 }"}};
-  if (number(key)) {
+  std::vector<BadValue> bad = {{"no number", "nan"}, {"a section", "{ x = 1 }"}};
+  if (!is_series(key)) {
+    bad.push_back({"a list", "[1]"});
+  }
+  if (is_numeric(key)) {
     bad.push_back({"a word", "\"often\""});
     add_numbers(key, bad);
+    if (is_series(key)) {
+      add_lists(key, bad);
+    }
   } else if (std::holds_alternative<std::string*>(key.field)) {
     bad.push_back({"of another type", "7"});
   } else {
@@ -107,7 +135,7 @@ TEST(BadConfig, each_value_that_no_key_can_have_is_refused_with_its_key_line_and
 TEST(BadConfig, each_number_of_the_table_has_a_least_and_a_greatest_value) {
   Settings settings;
   for (const Key& key : keys_of(settings)) {
-    if (number(key)) {
+    if (is_numeric(key)) {
       EXPECT_TRUE(std::isfinite(key.min) && std::isfinite(key.max) && key.min < key.max)
           << key.path();
     }
@@ -160,6 +188,23 @@ TEST(BadConfig, values_that_do_not_go_together_are_refused_with_the_line_that_se
       {"[path]\nweave = \"sine\"\nweave_pitch_mm = 0\n",
        ":2: ",
        {"path.weave", "path.weave_pitch_mm"}},
+      {"[path]\nweave=\"sine\"\nweave_amplitude_mm=1\nweave_pitch_mm=3\n"
+       "weave_dwell_left_mm=2\nweave_dwell_right_mm=0.5\n",
+       ":",
+       {"path.weave_dwell_left_mm", "path.weave_dwell_right_mm"}},
+      {"[path]\npasses=2\npass_out_mm=[0.0, 2.0, 4.0]\n",
+       ":2: ",
+       {"path.pass_out_mm", "path.passes"}},
+      {"[weld]\nvoltage_v=[20.0, 18]\n", ":2: ", {"weld.voltage_v", "weld.schedules"}},
+      {"[path]\npass_schedule=1\n", ":2: ", {"path.pass_schedule", "weld.schedules"}},
+      {"[path]\npass_crater_schedule=1\n", ":2: ", {"path.pass_crater_schedule", "weld.schedules"}},
+      {"[path]\nsectors=1\nsector_pass=1\n", ":3: ", {"path.sector_pass", "path.passes"}},
+      {"[path]\nsectors=1\nsector_schedule=1\n",
+       ":3: ",
+       {"path.sector_schedule", "weld.schedules"}},
+      {"[path]\nsector_to_mm=90\n", ":2: ", {"path.sector_to_mm", "path.sectors"}},
+      {"[resume]\nactive=true\npass=1\n", ":3: ", {"resume.pass", "path.passes"}},
+      {"[path]\npasses=2\nspeed_mm_s=[8.0, 0.5]\n", ":", {"path.crater_s", "rt.max_standing_s"}},
       {"[map]\nfine_cell_mm = 20\n", ":2: ", {"map.fine_cell_mm", "map.coarse_cell_mm"}},
       {"[rt]\nmax_standing_s = 0.2\n", ":2: ", {"path.crater_s", "rt.max_standing_s"}},
       {"[robot]\njerk_mm_s3 = 70000\n", ":2: ", {"robot.jerk_mm_s3", "rt.max_jerk_mm_s3"}},
@@ -208,7 +253,7 @@ TEST(BadConfig, what_is_let_through_at_the_start_is_not_refused_by_a_stage_later
     for (const double bound : {key.min, key.max}) {
       Settings settings;
       std::vector<Key> keys = keys_of(settings);
-      if (!number(key)) {
+      if (!is_numeric(key)) {
         continue;
       }
       const std::string value =
