@@ -118,7 +118,7 @@ class WeldSession {
   std::array<link::Frame, kMaxFrames> frames_{};
   std::int64_t now_ns_ = 0;
   std::int64_t status_ns_ = 0;  ///< When the newest status came,
-  std::uint64_t statuses_ = 0;  ///< which was the so manieth.
+  std::uint64_t statuses_ = 0;  ///< and its number, from 1.
   std::int64_t blocked_since_ns_ = 0;
   std::int64_t tripped_ns_ = 0;
   std::uint16_t trajectory_ = 0;
