@@ -101,8 +101,10 @@ TEST(Interrupt, while_it_welds_turns_the_arc_off_within_10_ms_and_keeps_the_reco
   ASSERT_GT(record.arc_off_ns, record.abort_ns);
   EXPECT_LE(record.arc_off_ns - record.abort_ns, 10'000'000);
   EXPECT_EQ(record.points_after, 0U);
-  std::ifstream report(scratch.path("out/report.json"));
-  EXPECT_NE(nlohmann::json::parse(report)["fault"].get<std::string>().find("interrupted"),
+  std::ifstream file(scratch.path("out/report.json"));
+  const auto report = nlohmann::json::parse(file);
+  EXPECT_NE(report["fault"].get<std::string>().find("interrupted"), std::string::npos);
+  EXPECT_NE(report["robot"]["to take the bead up again"].get<std::string>().find("resume.pass=0"),
             std::string::npos);
 }
 
