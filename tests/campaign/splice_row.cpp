@@ -15,8 +15,6 @@
 namespace dseam::test {
 namespace {
 
-constexpr double kChiSquared95 = 12.592;  // Six degrees of freedom.
-
 constexpr SpliceRow kRows[] = {{"markers", 18, 0.0, false, 0.03, 0.06},
                                {"round", 0, 0.0, false, 0.03, 0.10},
                                {"oval", 0, 0.3, false, 0.10, 0.25},
@@ -59,8 +57,30 @@ geometry::Matrix6 about_centre(const hal::sim::TruthCurve& seam, Eigen::Vector3d
   return here;
 }
 
+// Of all views but the last, which the others' mean tells.
+void judge_views(const std::vector<geometry::Vector6>& errors, const geometry::Matrix6& here,
+                 const splice::JointCovariance& joint, SpliceOutcome& out) {
+  const auto n = static_cast<Eigen::Index>(errors.size()) - 1;
+  geometry::Vector6 mean = geometry::Vector6::Zero();
+  for (const geometry::Vector6& error : errors) {
+    mean += error / static_cast<double>(errors.size());
+  }
+  Eigen::VectorXd e(6 * n);
+  Eigen::MatrixXd covariance(6 * n, 6 * n);
+  for (Eigen::Index v = 0; v < n; ++v) {
+    e.segment<6>(6 * v) = here * (errors[static_cast<std::size_t>(v)] - mean);
+    for (Eigen::Index w = 0; w < n; ++w) {
+      covariance.block<6, 6>(6 * v, 6 * w) =
+          here * joint.at(static_cast<std::size_t>(v), static_cast<std::size_t>(w)) *
+          here.transpose();
+    }
+  }
+  out.views_dof = static_cast<int>(6 * n);
+  out.views_nees = e.dot(covariance.ldlt().solve(e));
+}
+
 SpliceOutcome score(const hal::sim::Cell& cell, std::span<const splice::SplicedView> spliced,
-                    const splice::NetworkReport& report) {
+                    const splice::NetworkReport& report, const splice::JointCovariance& joint) {
   SpliceOutcome out;
   out.spliced = report.num_used == cell.views().size();
   if (!out.spliced) {
@@ -76,18 +96,16 @@ SpliceOutcome score(const hal::sim::Cell& cell, std::span<const splice::SplicedV
   out.has_base = report.has_base;
   Eigen::Vector3d centre;
   const geometry::Matrix6 here = about_centre(seam, centre);
-  for (std::size_t v = 0; v < spliced.size(); ++v) {
-    const geometry::Vector6 e =
-        geometry::difference(spliced[v].T_base_camera, shift * poses[v].truth);
-    out.view_nees.push_back(nees_of(here * e, here * spliced[v].covariance * here.transpose()));
+  std::vector<geometry::Vector6> errors;
+  for (const ViewPoses& view : poses) {
+    errors.push_back(geometry::difference(view.adjusted, shift * view.truth));
   }
+  judge_views(errors, here, joint, out);
   out.predicted_mm = splice::predicted_spread_mm(spliced, centre);
   const geometry::Vector6 b = geometry::difference(shift, {});
   out.base_nees = nees_of(here * b, here * report.base_covariance * here.transpose());
   return out;
 }
-
-double share(int part, int whole) { return whole > 0 ? static_cast<double>(part) / whole : 0.0; }
 
 }  // namespace
 
@@ -110,7 +128,7 @@ SpliceOutcome splice_seed(const SpliceRow& row, std::uint64_t seed, std::uint32_
   std::vector<splice::SplicedView> storage(config.views.count);
   Buffer<splice::SplicedView> spliced(storage);
   const auto report = chain.value().finish(spliced);
-  return score(cell.value(), spliced.view(), report);
+  return score(cell.value(), spliced.view(), report, chain.value().joint_covariance());
 }
 
 void SpliceTable::add(std::uint64_t seed, const SpliceOutcome& outcome) {
@@ -124,15 +142,9 @@ void SpliceTable::add(std::uint64_t seed, const SpliceOutcome& outcome) {
     worst_mm = outcome.rms_mm;
     worst_seed = seed;
   }
-  for (const double nees : outcome.view_nees) {
-    ++views;
-    views_inside += nees < kChiSquared95 ? 1 : 0;
-    sum_view_nees += nees;
-  }
+  views.add(outcome.views_nees, outcome.views_dof);
   if (outcome.has_base) {
-    ++bases;
-    bases_inside += outcome.base_nees < kChiSquared95 ? 1 : 0;
-    sum_base_nees += outcome.base_nees;
+    bases.add(outcome.base_nees, 6);
   }
 }
 
@@ -143,24 +155,25 @@ void SpliceTable::print(const SpliceRow& row) const {
   }
   std::printf(
       "%-8s %3zu seeds spliced, %d refused: splice error at the seam median %.4f p95 %.4f worst "
-      "%.4f mm (seed %llu), predicted median %.4f; views inside 95 %%: %.1f %%, mean NEES %.2f of "
-      "6; base inside: %.1f %%, mean NEES %.2f\n",
+      "%.4f mm (seed %llu), predicted median %.4f; NEES inside 95 %%, mean to expected: views "
+      "%.1f %%, %.2f; base %.1f %%, %.2f\n",
       row.name, rms_mm.size(), refused, quantile(rms_mm, 0.5), quantile(rms_mm, 0.95), worst_mm,
       static_cast<unsigned long long>(worst_seed), quantile(predicted_mm, 0.5),
-      100.0 * share(views_inside, views), sum_view_nees / std::max(1, views),
-      100.0 * share(bases_inside, bases), sum_base_nees / std::max(1, bases));
+      100.0 * views.share_inside(), views.mean_ratio(), 100.0 * bases.share_inside(),
+      bases.mean_ratio());
 }
 
 bool SpliceTable::holds(const SpliceRow& row) const {
   constexpr std::size_t kSeedsOfQuantile = 200;
-  constexpr int kScansOfNees = 300;
+  constexpr std::uint32_t kScansOfNees = 300;
   const bool many = rms_mm.size() >= kSeedsOfQuantile;
   const bool asked = row.median_mm > 0.0;
-  const double inside = share(views_inside, views);
   const bool figures =
       !asked || (refused == 0 && quantile(rms_mm, 0.5) <= row.median_mm &&
                  worst_mm < 2.0 * row.p95_mm && (!many || quantile(rms_mm, 0.95) <= row.p95_mm));
-  return figures && (views < kScansOfNees || inside >= 0.90);
+  const bool sigmas = (views.count() < kScansOfNees || views.passes()) &&
+                      (bases.count() < kScansOfNees || bases.passes());
+  return figures && sigmas;
 }
 
 }  // namespace dseam::test

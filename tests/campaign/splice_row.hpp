@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dseam/hal/sim/cell_config.hpp"
+#include "support/accuracy/chi_squared.hpp"
 
 namespace dseam::test {
 
@@ -26,8 +27,9 @@ struct SpliceOutcome {
   bool spliced = false;  ///< All views; otherwise nothing below is set.
   double rms_mm = 0.0;
   double predicted_mm = 0.0;
-  std::vector<double> view_nees;  ///< Six degrees of freedom each.
-  double base_nees = 0.0;
+  double views_nees = 0.0;  ///< Of all views about their mean, by their joint covariance,
+  int views_dof = 0;        ///< which has as many degrees of freedom.
+  double base_nees = 0.0;   ///< Six.
   bool has_base = false;
 };
 /// `shrink` divides the frame's width and height.
@@ -41,12 +43,8 @@ struct SpliceTable {
   std::uint64_t worst_seed = 0;
   double worst_mm = 0.0;
   int refused = 0;
-  int views = 0;
-  int views_inside = 0;  ///< The ellipsoid that 95 % should lie in.
-  int bases = 0;
-  int bases_inside = 0;
-  double sum_view_nees = 0.0;
-  double sum_base_nees = 0.0;
+  NeesTally views;  ///< One value a scan.
+  NeesTally bases;
 
   void add(std::uint64_t seed, const SpliceOutcome& outcome);
   void print(const SpliceRow& row) const;

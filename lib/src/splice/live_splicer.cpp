@@ -8,6 +8,11 @@
 #include "splice/network/surface_ties.hpp"
 
 namespace dseam::splice {
+namespace {
+
+constexpr std::uint32_t kReferenceStride = 2;  // Every how many blocks a patch is looked at.
+
+}  // namespace
 
 struct LiveSplicer::Sums {
   geometry::Matrix6 h = geometry::Matrix6::Zero();

@@ -65,6 +65,10 @@ class SpliceChain {
   [[nodiscard]] std::span<const markers::Marker> markers(std::size_t view) const noexcept;
   /// One entry a view in `out`, in the order of add().
   splice::NetworkReport finish(Buffer<splice::SplicedView>& out) noexcept;
+  /// How the views' errors hang together, after finish().
+  [[nodiscard]] const splice::JointCovariance& joint_covariance() const noexcept {
+    return network_->joint_covariance();
+  }
 
   /// clear(), add() for every frame, finish().
   ///

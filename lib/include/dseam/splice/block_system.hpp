@@ -6,6 +6,7 @@
 #include <span>
 
 #include "dseam/base/arena.hpp"
+#include "dseam/geometry/rigid_transform.hpp"
 
 namespace dseam::splice {
 
@@ -44,7 +45,9 @@ class BlockSystem {
       g_[row + static_cast<std::size_t>(i)] += block(i);
     }
   }
-  [[nodiscard]] std::span<double> matrix() noexcept { return h_; }
+  /// What motions M x of the unknowns from `row` on feel: rows and columns become M' H and H M, and
+  /// the gradient M' g.
+  void project(std::size_t row, const geometry::Matrix6& m) noexcept;
   [[nodiscard]] double at(std::size_t row, std::size_t column) const noexcept {
     return h_[row * size_ + column];
   }
@@ -55,9 +58,13 @@ class BlockSystem {
   void solve() noexcept;
   /// The inverse after factorise().
   void invert() noexcept;
+  /// The inverse H^-1 becomes H^-1 S H^-1, where S is the matrix that was added since.
+  void sandwich() noexcept;
   /// How much the squared error falls by the step: g^T H^-1 g.
   [[nodiscard]] double decrement() const noexcept;
   [[nodiscard]] std::span<const double> step() const noexcept { return step_.first(size_); }
+  /// The memory of the matrix, free for other numbers between the inversion and the next reset().
+  [[nodiscard]] std::span<double> spare() noexcept { return h_; }
   [[nodiscard]] double inverse(std::size_t row, std::size_t column) const noexcept {
     return inverse_[row * size_ + column];
   }

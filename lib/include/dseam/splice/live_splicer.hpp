@@ -25,7 +25,7 @@ class LiveSplicer {
     double final_gate_mm = 0.3;
     double min_sensitivity = 2e-3;  ///< Of a residual to a motion, squared; less is frozen.
     double min_share_near = 0.5;    ///< Of the ties that must hold at the end.
-    std::uint32_t min_ties = 100;
+    std::uint32_t min_ties = 40;
     std::uint32_t max_iterations = 20;
   };
   enum class State : std::uint8_t {

@@ -57,13 +57,28 @@ struct NetworkReport {
   geometry::Matrix6 base_covariance = geometry::Matrix6::Zero();
 };
 
+/// How the errors of all views hang together, about their mean: the blocks on the diagonal are
+/// `SplicedView::covariance`.
+///
+/// Frame:   base, as there.
+/// Memory:  lent by the network until its next run().
+struct JointCovariance {
+  static constexpr std::size_t kCells = 36 * cloud::kMaxViews * cloud::kMaxViews;
+  std::span<double> cells;
+
+  [[nodiscard]] Eigen::Map<geometry::Matrix6> at(std::size_t v, std::size_t w) const noexcept {
+    return Eigen::Map<geometry::Matrix6>(cells.data() + 36 * (v * cloud::kMaxViews + w));
+  }
+};
+
 /// One adjustment of all views: surface against surface wherever views overlap, markers as points
 /// in space, the robot's poses with their errors, and the scanner's depth bowl as an unknown that
 /// all views share.
 ///
 /// Every patch that several views see is one unknown height along its normal, eliminated on the
 /// spot; a marker is one unknown point. What remains are six unknowns a view, and the loop of views
-/// around the workpiece closes by itself. Nothing is assumed of the surface's shape, and pixels of
+/// around the workpiece closes by itself. A motion of a view that its ties know less of than its
+/// report is left to the report. Nothing is assumed of the surface's shape, and pixels of
 /// two views need no search: a patch is projected into the other image.
 ///
 /// Frame:   base, in the sense of docs/architecture.md: the least-squares fit to the reported
@@ -81,12 +96,13 @@ class ViewNetwork {
     double start_gate_mm = 8.0;     ///< How far apart surfaces may be at first,
     double final_gate_mm = 0.25;    ///< and at last, unless the surface is noisier.
     double min_share_near = 0.5;    ///< Of a view's ties that must hold; fewer contradict.
-    double max_sigma_mm = 0.5;      ///< Of a view at 100 mm; more is kUnobservable.
+    double max_sigma_mm = 0.5;      ///< Of a view at what is seen; more is kUnobservable.
     std::uint32_t max_iterations = 25;
   };
 
   [[nodiscard]] static constexpr std::size_t bytes() noexcept {
-    return BlockSystem::bytes(kUnknowns) + Arena::bytes<PosedView>(cloud::kMaxViews);
+    return BlockSystem::bytes(kUnknowns) + Arena::bytes<PosedView>(cloud::kMaxViews) +
+           Arena::bytes<geometry::Matrix6>(cloud::kMaxViews);
   }
   /// Errors:  kInvalidArgument, kOutOfMemory.
   [[nodiscard]] static Result<ViewNetwork> make(const Config& config, Arena& arena) noexcept;
@@ -96,14 +112,19 @@ class ViewNetwork {
   /// Shape:   `sights` is ordered by landmark.
   NetworkReport run(std::span<const NetworkView> views, std::span<const MarkerSight> sights,
                     Buffer<SplicedView>& out) noexcept;
+  /// Of the views of the last run().
+  [[nodiscard]] const JointCovariance& joint_covariance() const noexcept { return joint_; }
 
  private:
   static constexpr std::size_t kUnknowns = 6 * cloud::kMaxViews + 2;
+  static_assert(JointCovariance::kCells <= kUnknowns * kUnknowns);
   explicit ViewNetwork(const Config& config) noexcept : config_(config) {}
 
   Config config_;
   BlockSystem system_;
   std::span<PosedView> posed_;
+  std::span<geometry::Matrix6> tied_;
+  JointCovariance joint_;
 };
 
 }  // namespace dseam::splice

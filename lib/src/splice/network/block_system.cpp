@@ -21,6 +21,21 @@ void BlockSystem::reset(std::size_t size) noexcept {
   std::fill_n(g_.begin(), size, 0.0);
 }
 
+void BlockSystem::project(std::size_t row, const geometry::Matrix6& m) noexcept {
+  using Columns = Eigen::Map<geometry::Vector6, 0, Eigen::InnerStride<>>;
+  for (std::size_t k = 0; k < size_; ++k) {
+    Columns column(h_.data() + row * size_ + k,
+                   Eigen::InnerStride<>(static_cast<Eigen::Index>(size_)));
+    column = geometry::Vector6(m.transpose() * column);
+  }
+  for (std::size_t k = 0; k < size_; ++k) {
+    Eigen::Map<geometry::Vector6> part(h_.data() + k * size_ + row);
+    part = geometry::Vector6(m.transpose() * part);
+  }
+  Eigen::Map<geometry::Vector6> gradient(g_.data() + row);
+  gradient = geometry::Vector6(m.transpose() * gradient);
+}
+
 bool BlockSystem::factorise() noexcept {
   constexpr double kRelativePivot = 1e-13;
   for (std::size_t j = 0; j < size_; ++j) {
@@ -76,6 +91,28 @@ void BlockSystem::invert() noexcept {
     column[c] = 1.0;
     solve_in_place(column);
   }
+}
+
+namespace {
+
+// c = a b, b being symmetric.
+void multiply(std::span<const double> a, std::span<const double> b, std::size_t size,
+              std::span<double> c) noexcept {
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t j = 0; j < size; ++j) {
+      const auto row = a.subspan(i * size, size);
+      c[i * size + j] =
+          std::inner_product(row.begin(), row.end(), b.subspan(j * size, size).begin(), 0.0);
+    }
+  }
+}
+
+}  // namespace
+
+void BlockSystem::sandwich() noexcept {
+  multiply(inverse_, h_, size_, l_);
+  multiply(l_, inverse_, size_, h_);
+  std::copy_n(h_.begin(), size_ * size_, inverse_.begin());
 }
 
 }  // namespace dseam::splice

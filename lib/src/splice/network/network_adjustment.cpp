@@ -39,6 +39,8 @@ bool has_surface(const PatchField& field) noexcept {
 }  // namespace
 
 void Adjustment::take_in() noexcept {
+  std::fill(joint.cells.begin(), joint.cells.end(), 0.0);
+  std::fill(tied.begin(), tied.end(), Matrix6(Matrix6::Identity()));
   out.clear();
   out.resize(inputs.size());
   for (std::size_t v = 0; v < inputs.size(); ++v) {
@@ -61,6 +63,7 @@ void Adjustment::take_in() noexcept {
 // Turns act about the middle of what is seen, where their effect on residuals is small.
 void Adjustment::choose_pivot() noexcept {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double squares = 0.0;
   double count = 0.0;
   for (const PosedView& view : views) {
     for (std::uint32_t row = 0; view.used && row < view.field.rows; row += 8) {
@@ -68,11 +71,13 @@ void Adjustment::choose_pivot() noexcept {
         const Eigen::Vector2d c = view.field.centre_px(column, row);
         const SurfacePoint s = surface_at(view.field, c.x(), c.y());
         sum += s.valid ? Eigen::Vector3d(view.T_base_camera * s.p_camera) : Eigen::Vector3d::Zero();
+        squares += s.valid ? (view.T_base_camera * s.p_camera).squaredNorm() : 0.0;
         count += s.valid ? 1.0 : 0.0;
       }
     }
   }
   pivot = count > 0.0 ? Eigen::Vector3d(sum / count) : sum;
+  reach_mm = count > 0.0 ? std::sqrt(std::max(0.0, squares / count - pivot.squaredNorm())) : 0.0;
 }
 
 // The start may stand in the frame of one wrong report: take the one that most others agree with.
@@ -126,17 +131,28 @@ void Adjustment::add_reports() noexcept {
   system.add_gradient(bowl_at(), Eigen::Vector2d(bowl_weight * report.bowl_mm));
 }
 
-double Adjustment::step(double gate_mm) noexcept {
+void Adjustment::assemble_ties(bool without_noise) noexcept {
   system.reset(bowl_at() + 2);
   surface = {};
   markers = {};
   const double variance = sigma_mm * sigma_mm * ties_per_independent;
-  const SurfaceTieConfig ties{gate_mm, config.start_gate_mm, 1.0 / variance};
+  const SurfaceTieConfig ties{gate_mm, config.start_gate_mm, 1.0 / variance, without_noise};
   report.num_surface_ties =
       add_surface_ties(views, pivot, report.bowl_mm, ties, bowl_at(), system, surface);
   add_marker_ties(views, sights, pivot, report.bowl_mm, marker_variance_factor, bowl_at(), system,
                   markers);
+}
+
+void Adjustment::assemble(bool without_noise) noexcept {
+  assemble_ties(without_noise);
+  for (std::size_t v = 0; v < inputs.size(); ++v) {
+    system.project(6 * v, tied[v]);
+  }
   add_reports();
+}
+
+double Adjustment::step() noexcept {
+  assemble(false);
   if (!system.factorise()) {
     report.state = NetworkState::kSingular;
     return 0.0;
@@ -181,18 +197,18 @@ bool Adjustment::settle_weights() noexcept {
 void Adjustment::adjust() noexcept {
   constexpr double kSettledMm = 2e-4;
   constexpr double kSettledSigmas = 0.05;
-  double gate = config.start_gate_mm;
+  gate_mm = config.start_gate_mm;
   report.state = NetworkState::kNotConverged;
   sigma_mm = kPatchSigmaMm;
   ties_per_independent = kTiesPerIndependent;
   marker_variance_factor = 1.0;
   for (report.iterations = 1; report.iterations <= config.max_iterations; ++report.iterations) {
-    const double largest = step(gate);
+    const double largest = step();
     if (report.state == NetworkState::kSingular) {
       return;
     }
     const double final_gate = std::max(config.final_gate_mm, 6.0 * surface.sigma_mm());
-    const bool at_last_gate = gate <= config.final_gate_mm || gate <= 1.01 * final_gate;
+    const bool at_last_gate = gate_mm <= config.final_gate_mm || gate_mm <= 1.01 * final_gate;
     // Where the surfaces leave a direction to the reports, ties that come and go keep the last step
     // above any fixed length: then it is enough that it is small beside its own sigma.
     const double settled_decrement =
@@ -202,9 +218,14 @@ void Adjustment::adjust() noexcept {
       report.state = NetworkState::kAdjusted;
       return;
     }
-    gate =
-        std::max(std::min(0.5 * gate, std::max(4.0 * largest, final_gate)), config.final_gate_mm);
+    gate_mm = std::max(std::min(0.5 * gate_mm, std::max(4.0 * largest, final_gate)),
+                       config.final_gate_mm);
   }
+}
+
+void Adjustment::leave_out(std::size_t v, ViewState why) noexcept {
+  views[v].used = false;
+  out[v].state = why;
 }
 
 // A view whose surface lies apart from the others' where they overlap.
@@ -227,15 +248,15 @@ bool Adjustment::leave_out_worst() noexcept {
   const bool both = num_used() <= 2;
   for (std::size_t v = 0; v < inputs.size(); ++v) {
     if (views[v].used && (both || v == which)) {
-      views[v].used = false;
-      out[v].state = ViewState::kContradicts;
+      leave_out(v, ViewState::kContradicts);
     }
   }
   return !both;
 }
 
 // Only the largest set of views that hang together is one workpiece.
-void Adjustment::leave_out_unlinked() noexcept {
+bool Adjustment::leave_out_unlinked() noexcept {
+  bool any = false;
   std::uint32_t best = 0;
   for (std::size_t start = 0; start < inputs.size(); ++start) {
     if (!views[start].used) {
@@ -251,10 +272,11 @@ void Adjustment::leave_out_unlinked() noexcept {
   }
   for (std::size_t v = 0; v < inputs.size(); ++v) {
     if (views[v].used && ((best >> v) & 1U) == 0U) {
-      views[v].used = false;
-      out[v].state = ViewState::kNoOverlap;
+      leave_out(v, ViewState::kNoOverlap);
+      any = true;
     }
   }
+  return any;
 }
 
 }  // namespace dseam::splice

@@ -18,6 +18,8 @@ struct Adjustment {
   std::span<const NetworkView> inputs;
   std::span<const MarkerSight> sights;
   std::span<PosedView> views;
+  std::span<geometry::Matrix6> tied;  ///< Which part of each view's motion its ties tell.
+  JointCovariance& joint;
   Buffer<SplicedView>& out;
   NetworkReport report{};
 
@@ -25,9 +27,13 @@ struct Adjustment {
   MarkerStatistics markers{};
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();
   double sigma_mm = 0.0;
+  bool holds = false;  ///< Some motions are left to the reports.
   double marker_variance_factor = 1.0;
   double ties_per_independent = 1.0;
   double decrement = 0.0;  ///< The last step's squared length in sigmas.
+  double gate_mm = 0.0;    ///< Of the last step.
+  double reach_mm = 0.0;   ///< How far what is seen lies about the pivot.
+  geometry::Vector6 mean_offset = geometry::Vector6::Zero();
 
   [[nodiscard]] std::size_t bowl_at() const noexcept { return 6 * inputs.size(); }
   [[nodiscard]] std::size_t num_used() const noexcept {
@@ -41,12 +47,20 @@ struct Adjustment {
   void adjust() noexcept;
   void settle_marker_variance() noexcept;
   bool settle_weights() noexcept;
-  double step(double gate_mm) noexcept;
+  void assemble(bool without_noise) noexcept;
+  void assemble_ties(bool without_noise) noexcept;
+  double step() noexcept;
   void add_reports() noexcept;
+  void leave_out(std::size_t v, ViewState why) noexcept;
   bool leave_out_worst() noexcept;
-  void leave_out_unlinked() noexcept;
+  bool leave_out_unlinked() noexcept;
+  void hold_free_motions() noexcept;
+  bool leave_out_unobservable() noexcept;
+  [[nodiscard]] bool invert_information() noexcept;
   [[nodiscard]] geometry::Vector6 offset_effect(std::size_t v) const noexcept;
-  void fill_covariances() noexcept;
+  [[nodiscard]] double sigma_of(std::size_t v) const noexcept;
+  void fill_mean() noexcept;
+  void fill_joint() noexcept;
   void fill_views() noexcept;
 };
 

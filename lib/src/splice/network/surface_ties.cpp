@@ -18,13 +18,16 @@ struct Member {
   std::size_t view = 0;
   double height = 0.0;
   double weight = 1.0;
-  Row6 j = Row6::Zero();
   Eigen::Vector2d b = Eigen::Vector2d::Zero();
 };
 
 struct Group {
   std::array<Member, cloud::kMaxViews> members;
   std::size_t count = 0;
+  // One arm for all, or noise would turn all views together.
+  Eigen::Vector3d arm = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  Eigen::Vector3d others = Eigen::Vector3d::Zero();  // Sum of all normals but the reference's.
 
   void add(std::size_t view, const SurfaceSight& sight, const SurfaceSight& reference,
            const Eigen::Vector3d& pivot, double gate_mm) noexcept {
@@ -33,8 +36,16 @@ struct Group {
     m.height = reference.n_base.dot(sight.p_base - reference.p_base);
     const double s = m.height / gate_mm;
     m.weight = std::max(1e-6, (1.0 - s * s) * (1.0 - s * s));
-    m.j << reference.n_base.transpose(), (sight.p_base - pivot).cross(reference.n_base).transpose();
+    arm = reference.p_base - pivot;
+    normal = reference.n_base;
     m.b = sight.bowl_mm_per_mm;
+    others += count > 1 ? sight.n_base : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  }
+
+  [[nodiscard]] Row6 jacobian() const noexcept {
+    Row6 j;
+    j << normal.transpose(), arm.cross(normal).transpose();
+    return j;
   }
 };
 
@@ -51,25 +62,38 @@ void add_group(const Group& group, double weight, std::size_t bowl_at,
   }
   mean /= sum_w;
   mean_b /= sum_w;
-  const double c = weight / static_cast<double>(group.count);
+  const Row6 j = group.jacobian();
   for (std::size_t m = 0; m < group.count; ++m) {
     const Member& a = group.members[m];
-    const double w = c * a.weight;
+    const double w = weight * a.weight;
     const Eigen::Vector2d b = a.b - mean_b;
     system.add(6 * a.view, 6 * a.view,
-               Eigen::Matrix<double, 6, 6>(w * (1.0 - a.weight / sum_w) * a.j.transpose() * a.j));
-    system.add(6 * a.view, bowl_at,
-               Eigen::Matrix<double, 6, 2>(w * a.j.transpose() * b.transpose()));
+               Eigen::Matrix<double, 6, 6>(w * (1.0 - a.weight / sum_w) * j.transpose() * j));
+    system.add(6 * a.view, bowl_at, Eigen::Matrix<double, 6, 2>(w * j.transpose() * b.transpose()));
     system.add(bowl_at, bowl_at, Eigen::Matrix2d(w * b * b.transpose()));
-    system.add_gradient(6 * a.view, geometry::Vector6(w * (a.height - mean) * a.j.transpose()));
+    system.add_gradient(6 * a.view, geometry::Vector6(w * (a.height - mean) * j.transpose()));
     system.add_gradient(bowl_at, Eigen::Vector2d(w * (a.height - mean) * b));
     for (std::size_t n = m + 1; n < group.count; ++n) {
       const Member& other = group.members[n];
-      system.add(
-          6 * a.view, 6 * other.view,
-          Eigen::Matrix<double, 6, 6>(-w * other.weight / sum_w * a.j.transpose() * other.j));
+      system.add(6 * a.view, 6 * other.view,
+                 Eigen::Matrix<double, 6, 6>(-w * other.weight / sum_w * j.transpose() * j));
     }
   }
+}
+
+// Noise in a normal looks like information along the surface. In the product of two views' normals
+// it cancels: n m' + m n' = ((n + m)(n + m)' - (n - m)(n - m)') / 2.
+void add_group_without_noise(Group& group, double weight, std::size_t bowl_at,
+                             BlockSystem& system) noexcept {
+  const Eigen::Vector3d n = group.normal;
+  const Eigen::Vector3d m = group.others.normalized();
+  group.normal = 0.5 * (n + m);
+  add_group(group, weight, bowl_at, system);
+  group.normal = 0.5 * (n - m);
+  for (Member& member : group.members) {
+    member.b.setZero();
+  }
+  add_group(group, -weight, bowl_at, system);
 }
 
 // Residuals of one pair of views along a row of references, the last three kept.
@@ -98,9 +122,9 @@ class Walk {
 
   std::uint32_t over(std::size_t reference_view) noexcept {
     const PatchField& field = views_[reference_view].field;
-    for (std::uint32_t row = 0; row < field.rows; row += kReferenceStride) {
+    for (std::uint32_t row = 0; row < field.rows; ++row) {
       trails_ = {};
-      for (std::uint32_t column = 0; column < field.columns; column += kReferenceStride) {
+      for (std::uint32_t column = 0; column < field.columns; ++column) {
         const Eigen::Vector2d c = field.centre_px(column, row);
         tie(reference_view, sight_at(views_[reference_view], c.x(), c.y(), bowl_mm_));
       }
@@ -109,7 +133,22 @@ class Walk {
   }
 
  private:
-  void tie(std::size_t reference_view, const SurfaceSight& reference) noexcept {
+  // A place that an earlier view sees has been tied from there: nothing is told twice.
+  [[nodiscard]] bool is_told(std::size_t reference_view,
+                             const SurfaceSight& reference) const noexcept {
+    for (std::size_t v = 0; v < reference_view; ++v) {
+      const SurfaceSight sight =
+          views_[v].used ? sight_of(views_[v], reference, bowl_mm_) : SurfaceSight{};
+      const double height = reference.n_base.dot(sight.p_base - reference.p_base);
+      if (sight.valid && std::abs(height) < config_.gate_mm) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void tie(std::size_t reference_view, SurfaceSight reference) noexcept {
+    reference.valid = reference.valid && !is_told(reference_view, reference);
     Group group;
     if (reference.valid) {
       group.add(reference_view, reference, reference, pivot_, config_.gate_mm);
@@ -128,7 +167,11 @@ class Walk {
       }
     }
     if (group.count >= 2) {
-      add_group(group, config_.weight, bowl_at_, system_);
+      if (config_.without_noise) {
+        add_group_without_noise(group, config_.weight, bowl_at_, system_);
+      } else {
+        add_group(group, config_.weight, bowl_at_, system_);
+      }
       ties_ += static_cast<std::uint32_t>(group.count - 1);
     }
   }

@@ -47,7 +47,8 @@ struct SurfaceStatistics {
 struct SurfaceTieConfig {
   double gate_mm = 8.0;
   double wide_gate_mm = 8.0;
-  double weight = 1.0;  ///< One over the variance of a patch, correlation included, 1/mm^2.
+  double weight = 1.0;         ///< One over the variance of a patch, correlation included, 1/mm^2.
+  bool without_noise = false;  ///< The information without what noise in normals adds to it.
 };
 
 /// Adds all surface ties between used views to the system: unknowns 6 v .. 6 v + 5 of view v are
@@ -56,8 +57,5 @@ std::uint32_t add_surface_ties(std::span<const PosedView> views, const Eigen::Ve
                                const Eigen::Vector2d& bowl_mm, const SurfaceTieConfig& config,
                                std::size_t bowl_at, BlockSystem& system,
                                SurfaceStatistics& statistics) noexcept;
-
-/// Every how many blocks a patch is a reference.
-inline constexpr std::uint32_t kReferenceStride = 2;
 
 }  // namespace dseam::splice

@@ -4,78 +4,50 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dseam/geometry/symmetric_matrix.hpp"
 #include "splice/network/network_adjustment.hpp"
 
 namespace dseam::splice {
 namespace {
 
 using geometry::Matrix6;
-using geometry::Vector6;
 
-Matrix6 block_of(const BlockSystem& system, std::size_t row, std::size_t column) noexcept {
-  Matrix6 out;
-  for (std::size_t i = 0; i < 6; ++i) {
-    for (std::size_t j = 0; j < 6; ++j) {
-      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-          system.inverse(row + i, column + j);
-    }
-  }
-  return out;
+Matrix6 about_origin(const Matrix6& covariance, const Eigen::Vector3d& pivot) noexcept {
+  Matrix6 to_origin = Matrix6::Identity();
+  to_origin.topRightCorner<3, 3>() = geometry::skew(pivot);
+  return to_origin * covariance * to_origin.transpose();
 }
 
 }  // namespace
 
-// An error that all depths have in common moves every view along its own axis, and nothing in the
-// views can tell: poses take it up. What all views share of it belongs to the base.
-Vector6 Adjustment::offset_effect(std::size_t v) const noexcept {
-  Vector6 effect = Vector6::Zero();
-  effect.head<3>() = config.offset_sigma_mm * views[v].T_base_camera.rotation.col(2);
-  return effect;
-}
-
-void Adjustment::fill_covariances() noexcept {
-  system.invert();
-  const double n = static_cast<double>(num_used());
-  Matrix6 to_origin = Matrix6::Identity();
-  to_origin.topRightCorner<3, 3>() = geometry::skew(pivot);
-  Matrix6 mean = Matrix6::Zero();
+// What is free to slide must not be fused; the view that is known worst goes first.
+bool Adjustment::leave_out_unobservable() noexcept {
+  const bool known = invert_information();
+  fill_joint();
+  double worst = 0.0;
+  std::size_t which = 0;
   for (std::size_t v = 0; v < inputs.size(); ++v) {
-    for (std::size_t w = 0; views[v].used && w < inputs.size(); ++w) {
-      mean += views[w].used ? Matrix6(block_of(system, 6 * v, 6 * w) / (n * n)) : Matrix6::Zero();
-    }
+    const double sigma = views[v].used ? sigma_of(v) : -1.0;
+    which = sigma >= worst ? v : which;
+    worst = std::max(worst, sigma);
   }
-  Vector6 mean_offset = Vector6::Zero();
-  for (std::size_t v = 0; v < inputs.size(); ++v) {
-    mean_offset += views[v].used ? Vector6(offset_effect(v) / n) : Vector6::Zero();
+  const bool free = num_used() > 1 && (!known || worst > config.max_sigma_mm);
+  if (free) {
+    leave_out(which, ViewState::kUnobservable);
   }
-  report.base_covariance =
-      to_origin * (mean + mean_offset * mean_offset.transpose()) * to_origin.transpose();
-  for (std::size_t v = 0; v < inputs.size(); ++v) {
-    if (!views[v].used) {
-      continue;
-    }
-    Matrix6 with_mean = Matrix6::Zero();
-    for (std::size_t w = 0; w < inputs.size(); ++w) {
-      with_mean += views[w].used ? Matrix6(block_of(system, 6 * v, 6 * w) / n) : Matrix6::Zero();
-    }
-    const Vector6 offset = offset_effect(v) - mean_offset;
-    const Matrix6 relative = block_of(system, 6 * v, 6 * v) - with_mean - with_mean.transpose() +
-                             mean + offset * offset.transpose();
-    constexpr double kReachMm = 100.0;
-    Vector6 scale;
-    scale << 1.0, 1.0, 1.0, kReachMm, kReachMm, kReachMm;
-    const auto spread =
-        geometry::eigen_of_symmetric<6>(scale.asDiagonal() * relative * scale.asDiagonal());
-    const double largest = std::sqrt(std::max(0.0, spread.values(5)));
-    out[v].state = largest > config.max_sigma_mm ? ViewState::kUnobservable : ViewState::kUsed;
-    out[v].covariance = to_origin * relative * to_origin.transpose();
-  }
+  return free;
 }
 
 void Adjustment::fill_views() noexcept {
   for (std::size_t v = 0; v < inputs.size(); ++v) {
     SplicedView& view = out[v];
+    for (std::size_t w = 0; w < inputs.size(); ++w) {
+      joint.at(v, w) = about_origin(joint.at(v, w), pivot);
+    }
+    if (views[v].used) {
+      const bool known = report.state != NetworkState::kSingular;
+      view.state = known ? ViewState::kUsed : ViewState::kUnobservable;
+    }
+    view.covariance = joint.at(v, v);
     view.T_base_camera = views[v].T_base_camera;
     view.num_markers = markers.count[v];
     view.marker_rms_mm =
@@ -89,6 +61,7 @@ void Adjustment::fill_views() noexcept {
     }
     report.num_used += views[v].used ? 1U : 0U;
   }
+  report.base_covariance = about_origin(report.base_covariance, pivot);
   report.num_left_out = static_cast<std::uint32_t>(inputs.size()) - report.num_used;
   report.num_markers = markers.landmarks;
   report.num_markers_rejected = markers.rejected;
@@ -105,9 +78,11 @@ Result<ViewNetwork> ViewNetwork::make(const Config& config, Arena& arena) noexce
   ViewNetwork network(config);
   network.system_ = BlockSystem(kUnknowns, arena);
   network.posed_ = arena.take<PosedView>(cloud::kMaxViews);
+  network.tied_ = arena.take<Matrix6>(cloud::kMaxViews);
   if (arena.exhausted()) {
     return Errc::kOutOfMemory;
   }
+  network.joint_.cells = network.system_.spare().first(JointCovariance::kCells);
   return network;
 }
 
@@ -115,7 +90,9 @@ NetworkReport ViewNetwork::run(std::span<const NetworkView> views,
                                std::span<const MarkerSight> sights,
                                Buffer<SplicedView>& out) noexcept {
   const std::size_t count = std::min({views.size(), cloud::kMaxViews, out.capacity()});
-  Adjustment adjustment{config_, system_, views.first(count), sights, posed_.first(count), out};
+  Adjustment adjustment{
+      config_, system_, views.first(count), sights, posed_.first(count), tied_.first(count),
+      joint_,  out};
   adjustment.take_in();
   if (adjustment.num_used() == 0) {
     return adjustment.report;
@@ -127,17 +104,26 @@ NetworkReport ViewNetwork::run(std::span<const NetworkView> views,
   for (std::size_t round = 0; round < count && adjustment.leave_out_worst(); ++round) {
     adjustment.adjust();
   }
-  adjustment.leave_out_unlinked();
-  if (adjustment.num_used() == 0) {
-    adjustment.report.state = NetworkState::kNoViews;
-    adjustment.fill_views();
-    return adjustment.report;
+  for (std::size_t round = 0; round < count && adjustment.num_used() > 0; ++round) {
+    const bool unlinked = adjustment.leave_out_unlinked();
+    adjustment.hold_free_motions();
+    if (adjustment.holds || unlinked) {
+      adjustment.adjust();
+    }
+    if (adjustment.report.state == NetworkState::kSingular ||
+        !adjustment.leave_out_unobservable()) {
+      break;
+    }
+    adjustment.adjust();
   }
-  adjustment.adjust();
-  if (adjustment.report.state != NetworkState::kSingular) {
-    adjustment.fill_covariances();
+  if (adjustment.report.state == NetworkState::kSingular || adjustment.num_used() == 0) {
+    std::fill(joint_.cells.begin(), joint_.cells.end(), 0.0);
   }
   adjustment.fill_views();
+  if (adjustment.num_used() == 0) {
+    adjustment.report.state = NetworkState::kNoViews;
+    return adjustment.report;
+  }
   if (adjustment.num_used() == 1) {
     adjustment.report.state = NetworkState::kOneView;
   }

@@ -44,6 +44,20 @@ const Scan& other_markers() {
   return kScan;
 }
 
+/// A shell that is seen nowhere but on its side.
+const Scan& bare_pipe() {
+  static const Scan kScan = [] {
+    hal::sim::CellConfig config;
+    config.markers.count = 0;
+    config.joint.kind = hal::sim::JointKind::kShellOnly;
+    config.joint.shell_length_mm = 900.0;
+    config.views.count = 3;
+    config.views.azimuth_span_rad = 1.5;
+    return test::scan(config);
+  }();
+  return kScan;
+}
+
 std::size_t num_in(const Spliced& spliced, ViewState state) {
   return static_cast<std::size_t>(std::count_if(spliced.views.begin(), spliced.views.end(),
                                                 [&](const auto& v) { return v.state == state; }));
@@ -73,6 +87,13 @@ TEST(SpliceBadInput, without_markers_and_reports_only_the_first_view_stands) {
   const Spliced spliced = splice_all(std::span(bare_scan().frames).first(3), {});
 
   EXPECT_EQ(num_in(spliced, ViewState::kNoOverlap), 2U);
+  EXPECT_EQ(spliced.report.state, NetworkState::kOneView);
+}
+
+TEST(SpliceBadInput, views_that_can_slide_along_a_pipe_are_not_taken_for_spliced) {
+  const Spliced spliced = splice_all(bare_pipe().frames, bare_pipe().reported);
+
+  EXPECT_EQ(num_in(spliced, ViewState::kUnobservable), 2U);
   EXPECT_EQ(spliced.report.state, NetworkState::kOneView);
 }
 

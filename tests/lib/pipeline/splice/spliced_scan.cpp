@@ -20,7 +20,7 @@ Scan scan(const hal::sim::CellConfig& config) {
     out.reported.push_back({true, cell.value().views()[v].T_base_camera_reported});
     out.truth.push_back(cell.value().views()[v].T_base_camera);
   }
-  out.seam = *cell.value().seam();
+  out.seam = cell.value().seam().value_or(hal::sim::TruthCurve{});
   return out;
 }
 
