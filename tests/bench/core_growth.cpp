@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "../core_chain.hpp"
+#include "core_chain.hpp"
 #include "support/shapes/clouds.hpp"
 
 namespace dseam::bench {
