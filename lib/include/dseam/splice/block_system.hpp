@@ -48,8 +48,9 @@ class BlockSystem {
   /// What motions M x of the unknowns from `row` on feel: rows and columns become M' H and H M, and
   /// the gradient M' g.
   void project(std::size_t row, const geometry::Matrix6& m) noexcept;
-  [[nodiscard]] double at(std::size_t row, std::size_t column) const noexcept {
-    return h_[row * size_ + column];
+  /// Six by six of the matrix.
+  [[nodiscard]] geometry::Matrix6 block(std::size_t row, std::size_t column) const noexcept {
+    return block_of(h_, row, column);
   }
 
   /// False when the matrix is not positive definite (to rounding): the step is then unset.
@@ -65,11 +66,18 @@ class BlockSystem {
   [[nodiscard]] std::span<const double> step() const noexcept { return step_.first(size_); }
   /// The memory of the matrix, free for other numbers between the inversion and the next reset().
   [[nodiscard]] std::span<double> spare() noexcept { return h_; }
-  [[nodiscard]] double inverse(std::size_t row, std::size_t column) const noexcept {
-    return inverse_[row * size_ + column];
+  /// Six by six of the inverse.
+  [[nodiscard]] geometry::Matrix6 inverse_block(std::size_t row,
+                                                std::size_t column) const noexcept {
+    return block_of(inverse_, row, column);
   }
 
  private:
+  [[nodiscard]] double at(std::size_t row, std::size_t column) const noexcept {
+    return h_[row * size_ + column];
+  }
+  [[nodiscard]] geometry::Matrix6 block_of(std::span<const double> matrix, std::size_t row,
+                                           std::size_t column) const noexcept;
   void solve_in_place(std::span<double> x) const noexcept;
 
   std::size_t size_ = 0;

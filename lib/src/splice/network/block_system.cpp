@@ -36,6 +36,14 @@ void BlockSystem::project(std::size_t row, const geometry::Matrix6& m) noexcept 
   gradient = geometry::Vector6(m.transpose() * gradient);
 }
 
+geometry::Matrix6 BlockSystem::block_of(std::span<const double> matrix, std::size_t row,
+                                        std::size_t column) const noexcept {
+  using Rows =
+      Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>, 0, Eigen::OuterStride<>>;
+  return Rows(matrix.data() + row * size_ + column,
+              Eigen::OuterStride<>(static_cast<Eigen::Index>(size_)));
+}
+
 bool BlockSystem::factorise() noexcept {
   constexpr double kRelativePivot = 1e-13;
   for (std::size_t j = 0; j < size_; ++j) {

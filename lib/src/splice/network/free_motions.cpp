@@ -10,16 +10,6 @@ namespace {
 using geometry::Matrix6;
 using geometry::Vector6;
 
-Matrix6 diagonal_block(const BlockSystem& system, std::size_t at) noexcept {
-  Matrix6 out;
-  for (std::size_t i = 0; i < 6; ++i) {
-    for (std::size_t j = 0; j < 6; ++j) {
-      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = system.at(at + i, at + j);
-    }
-  }
-  return out;
-}
-
 // Which part of a motion the ties count in: `told` is their information without noise, `ties` that
 // with it, `all` that with the report's. A motion of unit length in `all` is known by its ties to
 // the variance ties / told^2, by the report to 1 / (all - ties). What the report knows better is
@@ -55,17 +45,17 @@ void Adjustment::hold_free_motions() noexcept {
   holds = false;
   assemble_ties(true);
   for (std::size_t v = 0; v < inputs.size(); ++v) {
-    tied[v] = diagonal_block(system, 6 * v);
+    tied[v] = system.block(6 * v, 6 * v);
   }
   assemble_ties(false);
   for (std::size_t v = 0; v < inputs.size(); ++v) {
-    const Matrix6 ties = diagonal_block(system, 6 * v);
+    const Matrix6 ties = system.block(6 * v, 6 * v);
     const Matrix6 told = tied[v];
     tied[v].setIdentity();
     if (views[v].used && inputs[v].reported.known) {
       add_reported_tie(views[v].T_base_camera, inputs[v].reported.T_base_camera, pivot, config,
                        6 * v, system);
-      tied[v] = tied_part(told, ties, diagonal_block(system, 6 * v), reach_mm);
+      tied[v] = tied_part(told, ties, system.block(6 * v, 6 * v), reach_mm);
       holds = holds || !tied[v].isIdentity(0.0);
     }
   }

@@ -6,23 +6,9 @@
 #include "splice/network/network_adjustment.hpp"
 
 namespace dseam::splice {
-namespace {
 
 using geometry::Matrix6;
 using geometry::Vector6;
-
-Matrix6 block_of(const BlockSystem& system, std::size_t row, std::size_t column) noexcept {
-  Matrix6 out;
-  for (std::size_t i = 0; i < 6; ++i) {
-    for (std::size_t j = 0; j < 6; ++j) {
-      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-          system.inverse(row + i, column + j);
-    }
-  }
-  return out;
-}
-
-}  // namespace
 
 // An error that all depths have in common moves every view along its own axis, and nothing in the
 // views can tell: poses take it up. What all views share of it belongs to the base.
@@ -59,7 +45,8 @@ void Adjustment::fill_mean() noexcept {
     auto with_mean = joint.at(v, v);
     with_mean.setZero();
     for (std::size_t w = 0; views[v].used && w < inputs.size(); ++w) {
-      with_mean += views[w].used ? Matrix6(block_of(system, 6 * v, 6 * w) / n) : Matrix6::Zero();
+      with_mean +=
+          views[w].used ? Matrix6(system.inverse_block(6 * v, 6 * w) / n) : Matrix6::Zero();
     }
     mean += with_mean / n;
     mean_offset += views[v].used ? Vector6(offset_effect(v) / n) : Vector6::Zero();
@@ -75,8 +62,8 @@ void Adjustment::fill_joint() noexcept {
     const Vector6 ow = offset_effect(w) - mean_offset;
     joint.at(v, w) =
         views[v].used && views[w].used
-            ? Matrix6(block_of(system, 6 * v, 6 * w) - joint.at(v, v) - joint.at(w, w).transpose() +
-                      report.base_covariance + ov * ow.transpose())
+            ? Matrix6(system.inverse_block(6 * v, 6 * w) - joint.at(v, v) -
+                      joint.at(w, w).transpose() + report.base_covariance + ov * ow.transpose())
             : Matrix6::Zero();
   };
   for (std::size_t v = 0; v < inputs.size(); ++v) {
