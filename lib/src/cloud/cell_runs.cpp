@@ -24,8 +24,9 @@ void CellRuns::sum_up() noexcept {
   IntLanes y = x;
   IntLanes z = x;
   const auto add_eight = [](std::uint32_t* steps, const IntLanes& before) noexcept {
-    lanes::store(before + lanes::running_sum(lanes::load_lanes<IntLanes>(steps)), steps);
-    return lanes::splat(static_cast<std::int32_t>(steps[kLanes - 1]));
+    const IntLanes sums = lanes::running_sum(lanes::load_lanes<IntLanes>(steps));
+    lanes::store(before + sums, steps);
+    return before + lanes::splat(static_cast<std::int32_t>(sums[kLanes - 1]));
   };
   x_.steps[0] = y_.steps[0] = z_.steps[0] = 0;
   for (std::size_t i = 1; i <= size_; i += kLanes) {  // All three at once: each waits for its sum.

@@ -67,7 +67,6 @@ struct FrameFuser::Frame {
   [[nodiscard]] std::uint32_t usable_bits(std::uint32_t u, std::uint32_t v, const IntLanes& counts,
                                           std::uint32_t present, Report& report) const noexcept {
     std::uint32_t left = lanes::bits(splat(0) < counts) & present;
-    report.pixels += count_of(present);
     report.without_depth += count_of(present & ~left);
     if (!view.masked.empty()) {
       const std::size_t width = view.image.intrinsics.width;
@@ -135,6 +134,10 @@ void FrameFuser::fuse_row(const Frame& frame, std::uint32_t v, VoxelMap& map,
   const geometry::Transform3f& t = frame.T_base_camera;
   const auto ray_y = static_cast<float>((v - image.intrinsics.cy) / image.intrinsics.fy);
   const std::uint32_t columns = (image.intrinsics.width + frame.stride - 1) / frame.stride;
+  report.pixels += columns;
+  // (rotation * ray) * z + translation; only the ray's x changes along a row.
+  const geometry::Vec3f rest{t.row_x.y * ray_y + t.row_x.z, t.row_y.y * ray_y + t.row_y.z,
+                             t.row_z.y * ray_y + t.row_z.z};
   for (std::uint32_t column = 0; column < columns; column += kLanes) {
     const std::uint32_t u = column * frame.stride;
     const std::uint32_t present = columns - column < kLanes ? (1U << (columns - column)) - 1 : kAll;
@@ -145,13 +148,12 @@ void FrameFuser::fuse_row(const Frame& frame, std::uint32_t v, VoxelMap& map,
     }
     const FloatLanes z = lanes::to_float(counts) * splat(frame.mm_per_count);
     const FloatLanes ray_x = lanes::load(&ray_x_[column]);
-    // (rotation * ray) * z + translation; only the ray's x changes along a row.
-    const auto base = [&](geometry::Vec3f row, float shift_mm) noexcept {
-      return (ray_x * splat(row.x) + splat(row.y * ray_y + row.z)) * z + splat(shift_mm);
+    const auto base = [&](float slope, float offset, float shift_mm) noexcept {
+      return (ray_x * splat(slope) + splat(offset)) * z + splat(shift_mm);
     };
-    const FloatLanes px = base(t.row_x, t.translation_mm.x);
-    const FloatLanes py = base(t.row_y, t.translation_mm.y);
-    const FloatLanes pz = base(t.row_z, t.translation_mm.z);
+    const FloatLanes px = base(t.row_x.x, rest.x, t.translation_mm.x);
+    const FloatLanes py = base(t.row_y.x, rest.y, t.translation_mm.y);
+    const FloatLanes pz = base(t.row_z.x, rest.z, t.translation_mm.z);
     const std::uint32_t inside = lanes::bits(frame.box.contains(px, py, pz)) & usable;
     report.dropped_outside += count_of(usable & ~inside);
     if (inside != 0) {

@@ -102,15 +102,24 @@ VoxelMap::Report VoxelMap::insert(const CloudView& cloud, std::size_t view) noex
   return report;
 }
 
+// A new cell's slot lies anywhere in memory. It is asked for kAhead runs before it is needed: the
+// memory answers while others are summed, and no more wait at a time than it answers at once.
 void VoxelMap::flush(ViewMask seen_by, Report& report) noexcept {
+  constexpr std::size_t kAhead = 32;
   CellRuns& runs = runs_[0];
   const std::size_t count = runs.cut();
-  for (std::size_t i = 0; i < count; ++i) {
-    const CellKey key = runs.key(i);
-    runs.wanted[i] = {key, hash_.place_of(key)};
-    hash_.fetch(runs.wanted[i].place);
+  const auto ask_for = [&](std::size_t run) noexcept {
+    const CellKey key = runs.key(run);
+    runs.wanted[run] = {key, hash_.place_of(key)};
+    hash_.fetch(runs.wanted[run].place);
+  };
+  for (std::size_t i = 0; i < std::min(kAhead, count); ++i) {
+    ask_for(i);
   }
   for (std::size_t i = 0; i < count; ++i) {
+    if (i + kAhead < count) {
+      ask_for(i + kAhead);
+    }
     const std::size_t known = hash_.size();
     const std::uint32_t number = hash_.find_or_insert(runs.wanted[i].key, runs.wanted[i].place);
     if (number == VoxelHash::kFull) {

@@ -146,9 +146,14 @@ template <typename Part>
   return Lanes<ShortPart>::each([](auto p) { return __builtin_convertvector(p, IntPart); }, narrow);
 }
 /// The greatest whole number that is not above; the caller has checked the range.
-[[gnu::always_inline, nodiscard]] inline IntLanes floor_to_int(const FloatLanes& a) noexcept {
+[[gnu::always_inline, nodiscard]] inline FloatLanes floor(const FloatLanes& a) noexcept {
+#if defined(__AVX__)
+  constexpr int kDownQuietly = 9;
+  return {__builtin_ia32_roundps256(a.low, kDownQuietly)};
+#else
   const IntLanes towards_zero = to_int(a);
-  return towards_zero + (to_float(towards_zero) > a);  // A mask that is set counts as -1.
+  return to_float(towards_zero + (to_float(towards_zero) > a));  // A mask that is set counts as -1.
+#endif
 }
 /// The same bits.
 [[gnu::always_inline, nodiscard]] inline FloatLanes as_floats(const IntLanes& a) noexcept {

@@ -97,8 +97,8 @@ class VoxelMap {
   [[nodiscard]] static CellRuns::Axis split(const lanes::FloatLanes& lattice,
                                             const lanes::IntLanes& in_range) noexcept {
     const lanes::FloatLanes safe = lanes::keep(in_range, lattice);
-    const lanes::IntLanes cell = lanes::floor_to_int(safe);
-    return {cell, lanes::to_int((safe - lanes::to_float(cell)) * lanes::splat(kStepsPerCell))};
+    const lanes::FloatLanes cell = lanes::floor(safe);
+    return {lanes::to_int(cell), lanes::to_int((safe - cell) * lanes::splat(kStepsPerCell))};
   }
 
   struct Sum {
