@@ -39,14 +39,14 @@ void ClosedCurveFit::find_hole(Report& report) noexcept {
 double ClosedCurveFit::fit_surface(Surface& surface) const noexcept {
   double rms = 1e300;
   for (int step = 0; step < kSurfaceSteps; ++step) {
-    SurfaceEquations equations;
+    SurfaceEquations equations(surface);
     for (const Station& s : stations_.first(count_)) {
       if (s.used) {
-        equations.add(surface, s.p);
+        equations.add(s.p);
       }
     }
     const double now = std::sqrt(equations.weighted_squares() / std::max(1.0, equations.weight()));
-    const std::optional<Surface> next = equations.solve(surface);
+    const std::optional<Surface> next = equations.solve();
     if (!next) {
       return 1e300;
     }

@@ -151,15 +151,15 @@ bool JointFit::refine(Side& side, Surface& surface) noexcept {
     if (cut == 0.0) {
       return false;
     }
-    SurfaceEquations equations;
+    SurfaceEquations equations(surface);
     for (std::size_t k = 0; k < side.points.size(); k += stride) {
       const NearPoint& q = side.points[k];
       const double weight = q.away_mm > inner_mm_ ? geometry::tukey(q.distance_mm / cut) : 0.0;
       if (weight > 0.0) {
-        equations.add(surface, pivot_ + q.from_pivot.cast<double>(), weight);
+        equations.add(pivot_ + q.from_pivot.cast<double>(), weight);
       }
     }
-    const std::optional<Surface> next = equations.solve(surface);
+    const std::optional<Surface> next = equations.solve();
     if (!next) {
       return false;
     }

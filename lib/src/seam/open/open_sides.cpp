@@ -106,16 +106,16 @@ bool OpenSides::refine(std::size_t side, OpenJoint& joint) noexcept {
     if (cut == 0.0) {
       return false;
     }
-    SurfaceEquations equations;
+    SurfaceEquations equations(surface);
     for (const Point& q : sides_[side].points.view()) {
       const double weight = double{q.away_mm} > kInnerSpacings * spacing_mm_
                                 ? geometry::tukey(double{q.off_mm} / cut)
                                 : 0.0;
       if (weight > 0.0) {
-        equations.add(surface, pivot_ + q.from_pivot.cast<double>(), weight);
+        equations.add(pivot_ + q.from_pivot.cast<double>(), weight);
       }
     }
-    const std::optional<Surface> next = equations.solve(surface);
+    const std::optional<Surface> next = equations.solve();
     if (!next) {
       return false;
     }

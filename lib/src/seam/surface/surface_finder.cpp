@@ -28,14 +28,20 @@ constexpr std::array<SurfaceKind, 4> kKinds = {SurfaceKind::kPlane, SurfaceKind:
                                                SurfaceKind::kCylinder, SurfaceKind::kCone};
 
 // How well a cell lies on a surface: 1 on it, 0 where it does not belong to it.
-double fit_of(const Surface& surface, const Cell& cell, double tolerance_mm,
-              double cosine) noexcept {
-  const double d = signed_distance(surface, cell.mean) / tolerance_mm;
-  const double inside = 1.0 - d * d;
-  if (!(inside > 0.0)) {
+[[gnu::always_inline]] inline double fit_of(const SurfaceProbe& probe,
+                                            const SurfaceProbe::Contact& contact, const Cell& cell,
+                                            double tolerance_mm, double cosine) noexcept {
+  if (!(std::abs(contact.distance_mm) < tolerance_mm) ||
+      !(std::abs(probe.normal(contact).dot(cell.normal)) > cosine)) {
     return 0.0;
   }
-  return std::abs(outward_normal(surface, cell.mean).dot(cell.normal)) > cosine ? inside : 0.0;
+  const double d = contact.distance_mm / tolerance_mm;
+  return 1.0 - d * d;
+}
+
+double fit_of(const SurfaceProbe& probe, const Cell& cell, double tolerance_mm,
+              double cosine) noexcept {
+  return fit_of(probe, probe.touch(cell.mean), cell, tolerance_mm, cosine);
 }
 
 bool is_larger(const FoundSurface& a, const FoundSurface& b) noexcept {
@@ -74,11 +80,15 @@ void SurfaceFinder::run(std::span<const Cell> cells, const CellScale& scale) noe
 // that was found first has taken cells of its neighbours.
 void SurfaceFinder::compete(std::span<const Cell> cells) noexcept {
   const std::size_t stride = 1 + cells.size() / kMaxFarCells;
+  std::array<SurfaceProbe, kMaxSurfaces> probes;
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+    probes[k] = SurfaceProbe(surfaces_[k].surface);
+  }
   for (std::size_t i = 0; i < cells.size(); i += stride) {
     double best = 0.0;
     owner_[i] = kMaxSurfaces;
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-      const double fit = fit_of(surfaces_[k].surface, cells[i], tolerance_mm_, explain_cosine_);
+      const double fit = fit_of(probes[k], cells[i], tolerance_mm_, explain_cosine_);
       if (fit > best) {
         best = fit;
         owner_[i] = static_cast<std::uint8_t>(k);
@@ -87,14 +97,14 @@ void SurfaceFinder::compete(std::span<const Cell> cells) noexcept {
   }
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     Surface& surface = surfaces_[k].surface;
-    SurfaceEquations equations;
+    SurfaceEquations equations(surface);
     for (std::size_t i = 0; i < cells.size(); i += stride) {
       if (owner_[i] == k) {
-        equations.add(surface, cells[i].mean,
-                      fit_of(surface, cells[i], tolerance_mm_, explain_cosine_));
+        equations.add(cells[i].mean,
+                      fit_of(equations.probe(), cells[i], tolerance_mm_, explain_cosine_));
       }
     }
-    surface = equations.solve(surface).value_or(surface);
+    surface = equations.solve().value_or(surface);
     surfaces_[k].support = equations.weight() * static_cast<double>(stride);
   }
 }
@@ -124,6 +134,7 @@ FoundSurface SurfaceFinder::best_of_seeds(std::span<const Cell> cells, double ce
     if (passed == n) {
       break;
     }
+    list_open(n);
     const FoundSurface found = best_from(cells, cells[seed], cell_mm);
     explained_[seed] = found.support < least;
     if (found.support >= least && found.score > best.score) {
@@ -145,13 +156,29 @@ void SurfaceFinder::keep(const FoundSurface& found) noexcept {
   }
 }
 
+void SurfaceFinder::list_open(std::size_t num_cells) noexcept {
+  open_.clear();
+  for (std::size_t i = 0; i < num_cells; ++i) {
+    if (!explained_[i]) {
+      (void)open_.append(static_cast<std::uint32_t>(i));
+    }
+  }
+}
+
+// What lies around the seed, and of it what turns as the seed does.
 void SurfaceFinder::collect_patch(std::span<const Cell> cells, const Cell& seed,
                                   double radius_mm) noexcept {
   patch_.clear();
-  for (std::size_t i = 0; i < cells.size() && !patch_.full(); ++i) {
+  near_.clear();
+  const double reach_mm = kFarReach * radius_mm;
+  for (const std::uint32_t i : open_.view()) {
+    const double squared = (cells[i].mean - seed.mean).squaredNorm();
+    if (squared > reach_mm * reach_mm) {
+      continue;
+    }
+    (void)near_.append(i);
     const double cosine = cells[i].normal.dot(seed.normal);
-    if (explained_[i] || std::abs(cosine) < kPatchCosine ||
-        (cells[i].mean - seed.mean).squaredNorm() > radius_mm * radius_mm) {
+    if (patch_.full() || std::abs(cosine) < kPatchCosine || squared > radius_mm * radius_mm) {
       continue;
     }
     Cell cell = cells[i];
@@ -213,27 +240,31 @@ FoundSurface SurfaceFinder::grown(std::span<const Cell> cells, const Cell& seed,
 // One step of the fit to the cells in the ball that lie on the surface; nothing where it fails.
 FoundSurface SurfaceFinder::refitted(std::span<const Cell> cells, const Ball& ball,
                                      const Surface& surface, double tolerance_mm) const noexcept {
-  SurfaceEquations equations;
-  const std::size_t stride = ball.far ? 1 + cells.size() / kMaxFarCells : 1;
-  for (std::size_t i = 0; i < cells.size(); i += stride) {
-    if (explained_[i] ||
-        (cells[i].mean - ball.centre).squaredNorm() > ball.radius_mm * ball.radius_mm) {
+  SurfaceEquations equations(surface);
+  const SurfaceProbe& probe = equations.probe();
+  const std::span<const std::uint32_t> some = ball.far ? open_.view() : near_.view();
+  const std::size_t stride = 1 + some.size() / kMaxFarCells;
+  for (std::size_t k = 0; k < some.size(); k += stride) {
+    const Cell& cell = cells[some[k]];
+    if ((cell.mean - ball.centre).squaredNorm() > ball.radius_mm * ball.radius_mm) {
       continue;
     }
-    const double fit = fit_of(surface, cells[i], tolerance_mm, same_cosine_);
+    const SurfaceProbe::Contact contact = probe.touch(cell.mean);
+    const double fit = fit_of(probe, contact, cell, tolerance_mm, same_cosine_);
     if (fit > 0.0) {
-      equations.add(surface, cells[i].mean, fit);
+      equations.add(contact, fit);
     }
   }
-  const std::optional<Surface> next = equations.solve(surface);
+  const std::optional<Surface> next = equations.solve();
   return next ? FoundSurface{*next, equations.weight() * static_cast<double>(stride), 0.0}
               : FoundSurface{};
 }
 
 void SurfaceFinder::explain(std::span<const Cell> cells, const Surface& surface) noexcept {
+  const SurfaceProbe probe(surface);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     explained_[i] =
-        explained_[i] || fit_of(surface, cells[i], 1.5 * tolerance_mm_, explain_cosine_) > 0.0;
+        explained_[i] || fit_of(probe, cells[i], 1.5 * tolerance_mm_, explain_cosine_) > 0.0;
   }
 }
 

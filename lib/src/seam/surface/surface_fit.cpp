@@ -61,17 +61,8 @@ std::optional<Surface> round_surface(SurfaceKind kind, std::span<const Cell> pat
 
 }  // namespace
 
-void SurfaceEquations::add(const Surface& surface, const Eigen::Vector3d& p,
-                           double weight) noexcept {
-  const double d = signed_distance(surface, p);
-  const SurfaceVector j = distance_jacobian(surface, p);
-  a_ += weight * j * j.transpose();
-  b_ += weight * d * j;
-  weight_ += weight;
-  squares_ += weight * d * d;
-}
-
-std::optional<Surface> SurfaceEquations::solve(const Surface& surface) const noexcept {
+std::optional<Surface> SurfaceEquations::solve() const noexcept {
+  const Surface& surface = probe_.surface();
   SurfaceMatrix a = a_;
   const int n = num_parameters(surface.kind);
   for (int i = 0; i < kMaxSurfaceParameters; ++i) {

@@ -33,12 +33,15 @@ class SurfaceFinder {
 
   [[nodiscard]] static constexpr std::size_t bytes(std::size_t max_cells) noexcept {
     return Arena::bytes<bool>(max_cells) + Arena::bytes<std::uint8_t>(max_cells) +
-           Arena::bytes<Cell>(kMaxPatch) + Arena::bytes<FoundSurface>(kMaxSurfaces);
+           2 * Arena::bytes<std::uint32_t>(max_cells) + Arena::bytes<Cell>(kMaxPatch) +
+           Arena::bytes<FoundSurface>(kMaxSurfaces);
   }
   SurfaceFinder() = default;
   SurfaceFinder(std::size_t max_cells, Arena& arena) noexcept
       : explained_(arena.take<bool>(max_cells)),
         owner_(arena.take<std::uint8_t>(max_cells)),
+        open_(arena.take<std::uint32_t>(max_cells)),
+        near_(arena.take<std::uint32_t>(max_cells)),
         patch_(arena.take<Cell>(kMaxPatch)),
         surfaces_(arena.take<FoundSurface>(kMaxSurfaces)) {}
 
@@ -46,12 +49,13 @@ class SurfaceFinder {
   [[nodiscard]] std::span<const FoundSurface> surfaces() const noexcept { return surfaces_.view(); }
 
  private:
+  void list_open(std::size_t num_cells) noexcept;
   void collect_patch(std::span<const Cell> cells, const Cell& seed, double radius_mm) noexcept;
   FoundSurface best_from(std::span<const Cell> cells, const Cell& seed, double cell_mm) noexcept;
   struct Ball {
     Eigen::Vector3d centre;
     double radius_mm;
-    bool far;  // A sample of the cells is enough.
+    bool far;  // Beyond what lies near the seed.
   };
   FoundSurface best_of_seeds(std::span<const Cell> cells, double cell_mm, double least,
                              double& place) noexcept;
@@ -69,6 +73,8 @@ class SurfaceFinder {
   double explain_cosine_ = 0.85;
   std::span<bool> explained_;
   std::span<std::uint8_t> owner_;
+  Buffer<std::uint32_t> open_;  ///< Cells not yet explained.
+  Buffer<std::uint32_t> near_;  ///< Those of them near the seed.
   Buffer<Cell> patch_;
   Buffer<FoundSurface> surfaces_;
 };
