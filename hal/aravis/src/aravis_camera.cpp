@@ -14,11 +14,12 @@ Result<std::unique_ptr<AravisCamera>> AravisCamera::open(const AravisConfig& con
 
 Result<std::unique_ptr<AravisCamera>> AravisCamera::open(const AravisConfig& config, AravisSys& sys,
                                                          std::string& problem) {
-  auto device = connect(config, sys, problem);
+  auto line = std::make_unique<ControlLine>();
+  auto device = connect(config, sys, *line, problem);
   if (!device.ok()) {
     return device.error();
   }
-  auto session = std::make_unique<Session>(config, sys, std::move(device.value()));
+  auto session = std::make_unique<Session>(config, sys, std::move(device.value()), std::move(line));
   if (const auto ready = session->prepare(problem); !ready.ok()) {
     return ready.error();
   }

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/device.hpp"
 
-#include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "device/scan3d.hpp"
 #include "dseam/depth/sample_layout.hpp"
@@ -108,20 +106,14 @@ void choose_packet_size(Device& device, const AravisConfig& config, AravisSys& s
 
 /// What the kernel gave the receiving socket, which is found by its port.
 std::size_t receive_buffer_of_port(std::uint16_t port) {
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", ignored)) {
-    const int fd = std::atoi(entry.path().filename().c_str());
-    sockaddr_in address{};
-    socklen_t size = sizeof address;
-    int granted = 0;
-    socklen_t granted_size = sizeof granted;
-    if (getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size) == 0 &&  // NOLINT: POSIX
-        address.sin_family == AF_INET && ntohs(address.sin_port) == port &&
-        getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &granted_size) == 0) {
-      return static_cast<std::size_t>(granted) / 2;  // The kernel doubles it for its bookkeeping.
-    }
+  const auto sockets = own_udp_sockets();
+  const auto found = std::ranges::find(sockets, port, &OwnSocket::port);
+  int granted = 0;
+  socklen_t size = sizeof granted;
+  if (found != sockets.end()) {
+    (void)getsockopt(found->fd, SOL_SOCKET, SO_RCVBUF, &granted, &size);
   }
-  return 0;
+  return static_cast<std::size_t>(granted) / 2;  // The kernel doubles it for its bookkeeping.
 }
 
 /// The frame's own size counts too: a buffer that holds none of it loses packets under load.
@@ -155,13 +147,13 @@ Result<> describe(Device& device, const AravisConfig& config, AravisSys& sys,
   return {};
 }
 
-}  // namespace
-
-Result<Device> connect(const AravisConfig& config, AravisSys& sys, std::string& problem) {
+Result<Device> open_camera(const AravisConfig& config, AravisSys& sys, ControlLine& line,
+                           std::string& problem) {
   if (config.id.starts_with("Fake")) {
     arv_enable_interface("Fake");
   }
   sys.find_devices();
+  const auto sockets = own_udp_sockets();
   Device device;
   GlibError error;
   device.camera.reset(sys.open(device_id_of(config.id).c_str(), error.out()));
@@ -170,26 +162,41 @@ Result<Device> connect(const AravisConfig& config, AravisSys& sys, std::string& 
               "); check power, cable and the network card's address: " + error.text();
     return Errc::kNotFound;
   }
-  ArvCamera* camera = device.camera.get();
-  device.is_gige = arv_camera_is_gv_device(camera) != FALSE;
-  if (!sys.controls(camera)) {
+  device.is_gige = arv_camera_is_gv_device(device.camera.get()) != FALSE;
+  if (device.is_gige) {
+    line.hold_the_new_one(sockets);
+  }
+  if (!sys.controls(device.camera.get())) {
     problem =
         "another program controls it; end that program (after a crash the camera frees "
         "itself within 3 s)";
     return Errc::kUnavailable;
   }
+  return device;
+}
+
+}  // namespace
+
+Result<Device> connect(const AravisConfig& config, AravisSys& sys, ControlLine& line,
+                       std::string& problem) {
+  auto opened = open_camera(config, sys, line, problem);
+  if (!opened.ok()) {
+    return opened.error();
+  }
+  Device& device = opened.value();
   if (config.gray_beside_depth) {
     if (const auto asked = ask_for_both_images(device, sys, problem); !asked.ok()) {
       return asked.error();
     }
   }
-  if (const auto applied = apply_settings(camera, config, sys, problem); !applied.ok()) {
+  if (const auto applied = apply_settings(device.camera.get(), config, sys, problem);
+      !applied.ok()) {
     return applied.error();
   }
   if (const auto described = describe(device, config, sys, problem); !described.ok()) {
     return described.error();
   }
-  return device;
+  return opened;
 }
 
 Result<> make_stream(Device& device, const AravisConfig& config, AravisSys& sys,

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "device/control_line.hpp"
 #include "device/glib_ptr.hpp"
 #include "dseam/hal/aravis/aravis_camera.hpp"
 #include "dseam/hal/aravis/aravis_sys.hpp"
@@ -20,8 +21,9 @@ struct Device {
   AravisGrant grant;
 };
 
-/// Connects and applies `config`; makes no stream yet.
-Result<Device> connect(const AravisConfig& config, AravisSys& sys, std::string& problem);
+/// Connects and applies `config`; makes no stream yet. `line` holds the way to the camera.
+Result<Device> connect(const AravisConfig& config, AravisSys& sys, ControlLine& line,
+                       std::string& problem);
 
 /// Makes the stream.
 ///

@@ -24,7 +24,8 @@ std::vector<CameraInfo> list_cameras() {
   for (CameraInfo& camera : cameras) {
     AravisConfig config;
     config.id = camera.id;
-    (void)connect(config, aravis_library(), camera.why_not);
+    ControlLine line;
+    (void)connect(config, aravis_library(), line, camera.why_not);
   }
   return cameras;
 }

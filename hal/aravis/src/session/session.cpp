@@ -16,25 +16,20 @@ constexpr std::uint32_t kFewestBuffers = 4;
 
 }  // namespace
 
-AravisCamera::Session::Session(const AravisConfig& config, AravisSys& sys, Device device)
+AravisCamera::Session::Session(const AravisConfig& config, AravisSys& sys, Device device,
+                               std::unique_ptr<ControlLine> line)
     : config_(config),
       active_(config),
       sys_(sys),
       wanted_{device.model, !config.gray, config.gray || config.gray_beside_depth},
       device_(std::move(device)),
+      line_(std::move(line)),
       sequence_(device_.is_gige || config.id.starts_with("Fake") ? 1 : 0,
                 device_.is_gige || config.id.starts_with("Fake") ? 65535 : UINT64_MAX >> 1U) {}
 
 AravisCamera::Session::~Session() {
   stop();
-  {
-    const std::lock_guard lock(mutex_);
-    quit_ = true;
-  }
-  wake_.notify_one();
-  if (control_.joinable()) {
-    control_.join();
-  }
+  end_control_thread();
   disconnect();
   for (ArvBuffer* buffer : popped_) {
     if (buffer != nullptr) {
@@ -91,6 +86,29 @@ void AravisCamera::Session::run() {
   if (acquiring_) {
     end_acquisition();
   }
+  disconnect();
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  answered_.notify_all();
+}
+
+/// A camera that has not answered for longer than one access takes is gone.
+void AravisCamera::Session::end_control_thread() noexcept {
+  constexpr auto kPatience = 3s;
+  if (!control_.joinable()) {
+    return;
+  }
+  std::unique_lock lock(mutex_);
+  quit_ = true;
+  wake_.notify_one();
+  const bool ended = answered_.wait_for(lock, kPatience, [&] { return ended_; });
+  lock.unlock();
+  if (!ended) {
+    line_->cut();
+  }
+  control_.join();
 }
 
 /// Waits to be woken, at most `time`. False: it is time to end.

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <condition_variable>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -27,7 +28,8 @@ namespace dseam::hal::aravis {
 /// back are only marked; the control thread hands them to Aravis.
 class AravisCamera::Session {
  public:
-  Session(const AravisConfig& config, AravisSys& sys, Device device);
+  Session(const AravisConfig& config, AravisSys& sys, Device device,
+          std::unique_ptr<ControlLine> line);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -64,6 +66,7 @@ class AravisCamera::Session {
 
   // The control thread's side.
   void run();
+  void end_control_thread() noexcept;
   void control_step();
   void begin_acquisition(std::uint32_t request);
   void answer_start(std::uint32_t request, const Result<>& result);
@@ -86,6 +89,7 @@ class AravisCamera::Session {
   AravisSys& sys_;
   WantedImages wanted_;
   Device device_;
+  const std::unique_ptr<ControlLine> line_;
   FramePool pool_;
   CameraCounters counters_;
   FrameSequence sequence_;
@@ -110,6 +114,7 @@ class AravisCamera::Session {
   std::condition_variable wake_;
   std::condition_variable answered_;
   bool quit_ = false;
+  bool ended_ = false;  ///< The control thread has let go of the camera.
   std::uint32_t start_request_ = 0;
   std::uint32_t start_answer_ = 0;
   Result<> start_result_;

@@ -84,6 +84,7 @@ void AravisCamera::Session::disconnect() {
   }
   device_.stream.reset();  // Joins Aravis' thread: from here on nobody writes to the pool.
   device_.camera.reset();
+  line_->release();
 }
 
 /// Makes the stream and gives it every buffer that is not on loan.
@@ -125,7 +126,7 @@ void AravisCamera::Session::keep_reconnecting() {
 
 bool AravisCamera::Session::reconnect_once() {
   std::string problem;
-  auto device = connect(active_, sys_, problem);
+  auto device = connect(active_, sys_, *line_, problem);
   if (!device.ok() || device.value().payload_bytes != pool_.payload_bytes() ||
       device.value().model.format != wanted_.model.format) {
     return false;
