@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <vector>
 
+#include "dseam/base/random.hpp"
+#include "dseam/hal/replay/png.hpp"
 #include "program/support/run_program.hpp"
 
 namespace dseam::program {
@@ -115,6 +119,56 @@ INSTANTIATE_TEST_SUITE_P(
                },
                "cam_t_w2c"}),
     [](const auto& bad) { return std::string(bad.param.name); });
+
+/// What a camera gives that sees nothing, and so cannot say where the work is.
+struct BlindView {
+  const char* name;
+  std::uint8_t shade;
+  std::uint16_t (*depth)(Pcg32& random);
+};
+
+void PrintTo(const BlindView& view, std::ostream* out) { *out << view.name; }
+
+class BlindCameraTest : public ::testing::TestWithParam<BlindView> {
+ protected:
+  void blind(const std::string& set) const {
+    constexpr std::uint32_t kWidth = 216;
+    constexpr std::uint32_t kHeight = 161;
+    const std::vector<std::uint8_t> shades(kWidth * kHeight, GetParam().shade);
+    std::vector<std::uint16_t> counts(kWidth * kHeight);
+    Pcg32 random(1);
+    std::ranges::generate(counts, [&] { return GetParam().depth(random); });
+    for (const char* view : {"000000.png", "000001.png"}) {
+      ASSERT_FALSE(hal::replay::write_png8(set + "/gray/" + view, kWidth, kHeight, shades));
+      ASSERT_FALSE(hal::replay::write_png16(set + "/depth/" + view, kWidth, kHeight, counts));
+    }
+  }
+
+  test::ScratchFolder scratch_;
+};
+
+TEST_P(BlindCameraTest, is_refused_with_a_reason_and_nothing_is_planned) {
+  const std::string set = scratch_.path("set");
+  std::filesystem::copy(good_set(), set, std::filesystem::copy_options::recursive);
+  blind(set);
+
+  const Outcome outcome =
+      run_program({"weld", "--camera", "replay:" + set, "--out", scratch_.path("out")});
+
+  EXPECT_EQ(outcome.exit_code, 4) << outcome.text;
+  EXPECT_NE(outcome.text.find("refused: "), std::string::npos) << outcome.text;
+  EXPECT_EQ(scratch_.names_in("out").count("path.csv"), 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Views, BlindCameraTest,
+    ::testing::Values(BlindView{"black", 0, [](Pcg32&) { return std::uint16_t{0}; }},
+                      BlindView{"saturated", 255, [](Pcg32&) { return std::uint16_t{0}; }},
+                      BlindView{"glare", 255,
+                                [](Pcg32& random) {
+                                  return static_cast<std::uint16_t>(random.below(65536));
+                                }}),
+    [](const auto& view) { return std::string(view.param.name); });
 
 TEST(BadScanSet, gray_of_another_size_is_named) {
   const test::ScratchFolder scratch;
