@@ -145,6 +145,24 @@ TEST_F(VividCameraTest, a_sequence_that_wraps_loses_nothing) {
   EXPECT_TRUE(Vivid::set("Wrap Sequence Number", 0));
 }
 
+TEST_F(VividCameraTest, a_time_stamp_that_wraps_never_leaves_the_present) {
+  for (const std::int32_t bits : {1, 2}) {  // Of 64 and of 32 bits.
+    ASSERT_TRUE(Vivid::set("Wrap Timestamp", bits));
+    const auto camera = open();
+    ASSERT_TRUE(camera->start(FrameMode::kEvery).ok());
+    std::int64_t before_ns = 0;
+    for (int i = 0; i < 20; ++i) {
+      const auto lease = camera->next(2s);
+      ASSERT_TRUE(lease.ok());
+      const DepthFrame& frame = lease.value().frame();
+      EXPECT_LE(frame.captured_ns, frame.dequeued_ns);
+      EXPECT_GE(frame.captured_ns, before_ns);
+      before_ns = frame.captured_ns;
+    }
+  }
+  EXPECT_TRUE(Vivid::set("Wrap Timestamp", 0));
+}
+
 TEST_F(VividCameraTest, stop_returns_within_100_ms_also_while_the_device_is_gone) {
   const auto camera = open();
   ASSERT_TRUE(camera->start(FrameMode::kEvery).ok());
