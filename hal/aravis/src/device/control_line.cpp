@@ -18,7 +18,7 @@ void end_sending(int fd) noexcept { (void)shutdown(fd, SHUT_WR); }
 void ControlLine::hold_the_new_one(std::span<const OwnSocket> before) {
   auto sockets = own_udp_sockets();
   std::erase_if(sockets, [&](const OwnSocket& socket) {
-    return std::ranges::find(before, socket.inode, &OwnSocket::inode) != before.end();
+    return std::ranges::find(before, socket.cookie, &OwnSocket::cookie) != before.end();
   });
   release();
   const std::lock_guard lock(mutex_);

@@ -3,7 +3,6 @@
 
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -11,10 +10,13 @@
 namespace dseam::hal::aravis {
 namespace {
 
-bool is_datagram_socket(int fd) {
-  int type = 0;
-  socklen_t size = sizeof type;
-  return getsockopt(fd, SOL_SOCKET, SO_TYPE, &type, &size) == 0 && type == SOCK_DGRAM;
+/// 0 also for what is no socket.
+template <typename Value>
+Value option_of(int fd, int option) {
+  Value value{};
+  socklen_t size = sizeof value;
+  (void)getsockopt(fd, SOL_SOCKET, option, &value, &size);
+  return value;
 }
 
 std::uint16_t port_of(int fd) {
@@ -32,10 +34,9 @@ std::vector<OwnSocket> own_udp_sockets() {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", ignored)) {
     const int fd = std::atoi(entry.path().filename().c_str());
-    struct stat about {};
-    const std::uint16_t port = is_datagram_socket(fd) ? port_of(fd) : std::uint16_t{0};
-    if (port != 0 && fstat(fd, &about) == 0) {
-      sockets.push_back({fd, about.st_ino, port});
+    const std::uint16_t port = port_of(fd);
+    if (port != 0 && option_of<int>(fd, SO_TYPE) == SOCK_DGRAM) {
+      sockets.push_back({fd, option_of<std::uint64_t>(fd, SO_COOKIE), port});
     }
   }
   return sockets;

@@ -9,7 +9,7 @@ namespace dseam::hal::aravis {
 /// A UDP socket of this process with a port, whoever made it.
 struct OwnSocket {
   int fd = -1;
-  std::uint64_t inode = 0;  ///< Of one socket only, while descriptors are used again.
+  std::uint64_t cookie = 0;  ///< Of one socket only, while descriptors are used again.
   std::uint16_t port = 0;
 };
 
