@@ -183,8 +183,6 @@ INSTANTIATE_TEST_SUITE_P(
                                 CameraVerdict::kStuck},
                       FaultCase{"garbage", DeviceFault::kGarbage, &CameraHealth::damaged, 5},
                       FaultCase{"wrong", DeviceFault::kWrong, &CameraHealth::damaged, 5},
-                      FaultCase{"delayed", DeviceFault::kDelayed, &CameraHealth::delivered, 15,
-                                CameraVerdict::kStale},
                       FaultCase{"intermittent", DeviceFault::kIntermittent, &CameraHealth::lost, 2},
                       FaultCase{"lost", DeviceFault::kLost, &CameraHealth::lost, 5},
                       FaultCase{"truncated", DeviceFault::kTruncated, &CameraHealth::damaged, 5},
@@ -192,6 +190,20 @@ INSTANTIATE_TEST_SUITE_P(
                       FaultCase{"clock_jump", DeviceFault::kClockJump, &CameraHealth::delivered, 15,
                                 CameraVerdict::kClockJump}),
     [](const auto& row) { return std::string(row.param.name); });
+
+TEST_F(V4l2CameraTest, frames_that_come_half_a_second_late_are_stale) {
+  FakeV4l2Sys sys({.period_ns = 2'000'000});  // Two of the same microsecond would be a repetition.
+  const auto camera = open(sys);
+  const std::array<FaultStep, 2> script{{{DeviceFault::kDelayed, 5}, {DeviceFault::kNone, 5}}};
+  sys.play(script);
+  ASSERT_TRUE(camera->start(FrameMode::kEvery).ok());
+
+  EXPECT_GE(frames_in(*camera, 40), 10);
+
+  EXPECT_GE(monitor_.counted(CameraVerdict::kStale), 1U);
+  EXPECT_LE(monitor_.counted(CameraVerdict::kStale), 5U);
+  EXPECT_GE(monitor_.counted(CameraVerdict::kGood), 5U);
+}
 
 TEST_F(V4l2CameraTest, a_time_stamp_in_the_future_or_long_past_never_leaves_the_present) {
   FakeV4l2Sys sys;
