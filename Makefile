@@ -8,7 +8,8 @@ JOBS ?= $(shell nproc)
 OUT ?= out/demo
 BUILD = build/$(PRESET)
 THREADED = rt_core_test rt_linux_test rt_session_test candump_test socketcan_test fake_camera_test \
-  aravis_multipart_test aravis_fault_sweep_test
+  aravis_camera_test aravis_multipart_test aravis_fault_sweep_test aravis_camera_contract_test \
+  v4l2_camera_test v4l2_camera_contract_test can_bus_contract_test
 CYCLE = rt_core_test rt_session_test link_test
 INSTALL = cmake/install_packages.sh
 
