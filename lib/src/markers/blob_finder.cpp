@@ -2,10 +2,19 @@
 #include "dseam/markers/blob_finder.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <utility>
 
+#include "dseam/base/lanes.hpp"
+
 namespace dseam::markers {
+namespace {
+
+using lanes::IntLanes;
+
+constexpr std::uint32_t kLanes = lanes::kLanes;
+constexpr std::uint32_t kAll = 0xFFU;
+
+}  // namespace
 
 Result<BlobFinder> BlobFinder::make(const Config& config, std::uint32_t width,
                                     Arena& arena) noexcept {
@@ -19,7 +28,9 @@ Result<BlobFinder> BlobFinder::make(const Config& config, std::uint32_t width,
     finder.config_.half_window_px = std::max<std::uint32_t>(4, width / 30);
   }
   finder.blobs_ = arena.take<Blob>(kMaxBlobs);
-  finder.column_sums_ = arena.take<std::uint32_t>(width);
+  finder.no_row_ = arena.take<std::uint8_t>(width);
+  finder.column_sums_ = arena.take<std::uint32_t>(width + kLanes);
+  finder.sums_before_ = arena.take<std::uint32_t>(width + 1 + kLanes);
   finder.runs_ = arena.take<Run>(width);
   finder.runs_above_ = arena.take<Run>(width);
   if (arena.exhausted()) {
@@ -34,21 +45,19 @@ BlobFinder::Report BlobFinder::run(std::span<const std::uint8_t> gray) noexcept 
   const auto height = static_cast<std::int32_t>(gray.size() / width_);
   const auto half = static_cast<std::int32_t>(config_.half_window_px);
   std::fill(column_sums_.begin(), column_sums_.end(), 0U);
+  const auto row = [&](std::int32_t v) {
+    const bool exists = v >= 0 && v < height;
+    return exists ? gray.subspan(static_cast<std::size_t>(v) * width_, width_) : no_row_;
+  };
   for (std::int32_t v = 0; v < std::min(half, height); ++v) {
-    add_row(gray, v, 1);
+    slide_window(row(v), no_row_);
   }
   std::size_t count_above = 0;
   for (std::int32_t v = 0; v < std::min<std::int32_t>(height, 65535); ++v) {
-    if (v + half < height) {
-      add_row(gray, v + half, 1);
-    }
-    if (v - half - 1 >= 0) {
-      add_row(gray, v - half - 1, -1);
-    }
+    slide_window(row(v + half), row(v - half - 1));
     const std::int32_t rows =
         std::min(v + half, height - 1) - std::max<std::int32_t>(v - half, 0) + 1;
-    const std::size_t count = find_runs(gray.subspan(static_cast<std::size_t>(v) * width_, width_),
-                                        static_cast<std::uint32_t>(rows));
+    const std::size_t count = find_runs(row(v), static_cast<std::uint32_t>(rows));
     connect(count, count_above, static_cast<std::uint16_t>(v), report);
     std::swap(runs_, runs_above_);
     count_above = count;
@@ -57,57 +66,101 @@ BlobFinder::Report BlobFinder::run(std::span<const std::uint8_t> gray) noexcept 
   return report;
 }
 
-void BlobFinder::add_row(std::span<const std::uint8_t> gray, std::int32_t row,
-                         std::int32_t sign) noexcept {
-  const auto pixels = gray.subspan(static_cast<std::size_t>(row) * width_, width_);
-  const auto factor = static_cast<std::uint32_t>(sign);  // Wraps around, on purpose.
-  for (std::size_t u = 0; u < width_; ++u) {
-    column_sums_[u] += factor * pixels[u];
+void BlobFinder::slide_window(std::span<const std::uint8_t> entering,
+                              std::span<const std::uint8_t> leaving) noexcept {
+  const std::uint32_t whole = width_ / kLanes * kLanes;
+  for (std::uint32_t u = 0; u < whole; u += kLanes) {
+    const IntLanes sums = lanes::load_lanes<IntLanes>(&column_sums_[u]);
+    lanes::store(sums + lanes::widen(&entering[u]) - lanes::widen(&leaving[u]), &column_sums_[u]);
+  }
+  for (std::uint32_t u = whole; u < width_; ++u) {
+    column_sums_[u] += entering[u];
+    column_sums_[u] -= leaving[u];
+  }
+}
+
+// sums_before_[u] of all columns left of u; they wrap around, their differences do not.
+void BlobFinder::sum_columns() noexcept {
+  IntLanes before = lanes::splat(0);
+  for (std::uint32_t u = 0; u < width_; u += kLanes) {
+    const IntLanes sums = lanes::running_sum(lanes::load_lanes<IntLanes>(&column_sums_[u]));
+    lanes::store(before + sums, &sums_before_[u + 1]);
+    before = before + lanes::splat(static_cast<std::int32_t>(sums[kLanes - 1]));
   }
 }
 
 // The mean is never formed: pixel < mean - contrast becomes (pixel + contrast) * n < sum.
-std::size_t BlobFinder::find_runs(std::span<const std::uint8_t> row,
-                                  std::uint32_t rows_in_window) noexcept {
+std::int32_t BlobFinder::sign_at(std::span<const std::uint8_t> row, std::uint32_t u,
+                                 std::uint32_t rows_in_window) const noexcept {
   const std::uint32_t half = config_.half_window_px;
-  const auto contrast = static_cast<std::int32_t>(config_.min_contrast);
-  std::uint32_t sum = 0;
-  std::uint32_t columns = 0;
-  for (std::uint32_t u = 0; u < std::min(half, width_); ++u) {
-    sum += column_sums_[u];
-    ++columns;
-  }
+  const std::uint32_t first = u > half ? u - half : 0;
+  const std::uint32_t end = std::min(u + half + 1, width_);
+  const auto n = static_cast<std::int32_t>((end - first) * rows_in_window);
+  const auto sum = static_cast<std::int32_t>(sums_before_[end] - sums_before_[first]);
+  const std::int32_t difference = row[u] * n - sum;
+  const std::int32_t limit = config_.min_contrast * n;
+  return (difference > limit ? 1 : 0) - (difference < -limit ? 1 : 0);
+}
+
+BlobFinder::Signs BlobFinder::eight_signs_at(std::span<const std::uint8_t> row, std::uint32_t u,
+                                             std::uint32_t rows_in_window) const noexcept {
+  const std::uint32_t half = config_.half_window_px;
+  const IntLanes n = lanes::splat(static_cast<std::int32_t>((2 * half + 1) * rows_in_window));
+  const IntLanes sum = lanes::load_lanes<IntLanes>(&sums_before_[u + half + 1]) -
+                       lanes::load_lanes<IntLanes>(&sums_before_[u - half]);
+  const IntLanes difference = lanes::widen(&row[u]) * n - sum;
+  const IntLanes limit = lanes::splat(std::int32_t{config_.min_contrast}) * n;
+  return {lanes::bits(limit < difference), lanes::bits(difference < lanes::splat(0) - limit)};
+}
+
+/// Joins the signs of a row's pixels, read from left to right, to runs.
+struct BlobFinder::RunReader {
+  std::span<Run> runs;
   std::size_t count = 0;
   std::int32_t open = 0;  // The sign of the run that is being read, 0 for none.
-  for (std::uint32_t u = 0; u < width_; ++u) {
-    if (u + half < width_) {
-      sum += column_sums_[u + half];
-      ++columns;
-    }
-    if (u > half) {
-      sum -= column_sums_[u - half - 1];
-      --columns;
-    }
-    const auto n = static_cast<std::int32_t>(columns * rows_in_window);
-    const std::int32_t difference = row[u] * n - static_cast<std::int32_t>(sum);
-    const std::int32_t limit = contrast * n;
-    const std::int32_t sign = (difference > limit ? 1 : 0) - (difference < -limit ? 1 : 0);
+
+  void read(std::uint32_t u, std::int32_t sign) noexcept {
     if (sign == open) {
-      continue;
+      return;
     }
     if (open != 0) {
-      runs_[count++].end = static_cast<std::uint16_t>(u);
+      runs[count++].end = static_cast<std::uint16_t>(u);
     }
     if (sign != 0) {
-      runs_[count] = {static_cast<std::uint16_t>(u), 0,
-                      sign > 0 ? Polarity::kLightOnDark : Polarity::kDarkOnLight, kNoBlob};
+      runs[count] = {static_cast<std::uint16_t>(u), 0,
+                     sign > 0 ? Polarity::kLightOnDark : Polarity::kDarkOnLight, kNoBlob};
     }
     open = sign;
   }
-  if (open != 0) {
-    runs_[count++].end = static_cast<std::uint16_t>(width_);
+  void read_eight(std::uint32_t u, Signs signs) noexcept {
+    const Signs same{open > 0 ? kAll : 0U, open < 0 ? kAll : 0U};
+    if (signs.light == same.light && signs.dark == same.dark) {
+      return;
+    }
+    for (std::uint32_t i = 0; i < kLanes; ++i) {
+      read(u + i, static_cast<std::int32_t>(signs.light >> i & 1U) -
+                      static_cast<std::int32_t>(signs.dark >> i & 1U));
+    }
   }
-  return count;
+};
+
+std::size_t BlobFinder::find_runs(std::span<const std::uint8_t> row,
+                                  std::uint32_t rows_in_window) noexcept {
+  sum_columns();
+  RunReader reader{runs_};
+  const std::uint32_t half = config_.half_window_px;
+  std::uint32_t u = 0;
+  for (; u < std::min(half, width_); ++u) {
+    reader.read(u, sign_at(row, u, rows_in_window));
+  }
+  for (; u + half + kLanes <= width_; u += kLanes) {
+    reader.read_eight(u, eight_signs_at(row, u, rows_in_window));
+  }
+  for (; u < width_; ++u) {
+    reader.read(u, sign_at(row, u, rows_in_window));
+  }
+  reader.read(width_, 0);
+  return reader.count;
 }
 
 void BlobFinder::connect(std::size_t count, std::size_t count_above, std::uint16_t v,

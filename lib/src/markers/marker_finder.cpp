@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "markers/disc_surface.hpp"
-#include "markers/ellipse_edge.hpp"
+#include "markers/rim/ellipse_edge.hpp"
+#include "markers/surface/disc_surface.hpp"
 
 namespace dseam::markers {
 namespace {
@@ -89,7 +89,11 @@ Result<MarkerFinder> MarkerFinder::make(const Config& config, std::uint32_t widt
   if (!blobs.ok()) {
     return blobs.error();
   }
-  return MarkerFinder(config, width, blobs.value());
+  MarkerFinder finder(config, width, blobs.value(), arena);
+  if (arena.exhausted()) {
+    return Errc::kOutOfMemory;
+  }
+  return finder;
 }
 
 MarkerFinder::Report MarkerFinder::run(const depth::DepthImage& frame,
@@ -114,7 +118,7 @@ MarkerFinder::Report MarkerFinder::run(const depth::DepthImage& frame,
 }
 
 void MarkerFinder::examine(const depth::DepthImage& frame, const Blob& blob, Report& report,
-                           Buffer<Marker>& out) const noexcept {
+                           Buffer<Marker>& out) noexcept {
   const geometry::Ellipse start = moment_ellipse(blob);
   if (!ellipse_like(blob, start, config_)) {
     ++report.rejected_shape;
@@ -139,8 +143,8 @@ void MarkerFinder::examine(const depth::DepthImage& frame, const Blob& blob, Rep
 }
 
 bool MarkerFinder::lay(const depth::DepthImage& frame, const EllipseEdge& edge, Marker& marker,
-                       Report& report) const noexcept {
-  const SurfaceDisc disc = lay_on_surface(frame, edge, config_.max_hole_depth_mm);
+                       Report& report) noexcept {
+  const SurfaceDisc disc = lay_on_surface(frame, edge, config_.max_hole_depth_mm, ring_);
   if (disc.state != DiscState::kDisc) {
     ++(disc.state == DiscState::kHole ? report.rejected_hole : report.rejected_surface);
     return false;

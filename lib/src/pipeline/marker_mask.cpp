@@ -27,9 +27,10 @@ void paint(const geometry::Ellipse& ellipse, const depth::Intrinsics& intrinsics
            std::span<std::uint8_t> mask) noexcept {
   const PixelRange columns = range_around(ellipse.u, kCovered * ellipse.a, intrinsics.width);
   const PixelRange rows = range_around(ellipse.v, kCovered * ellipse.a, intrinsics.height);
+  const geometry::EllipseGauge gauge(ellipse);
   for (std::uint32_t v = rows.first; v < rows.end; ++v) {
     for (std::uint32_t u = columns.first; u < columns.end; ++u) {
-      if (ellipse.relative_radius(u, v) <= kCovered) {
+      if (gauge.squared_radius(u, v) <= kCovered * kCovered) {
         mask[static_cast<std::size_t>(v) * intrinsics.width + u] = 1;
       }
     }

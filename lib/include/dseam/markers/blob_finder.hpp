@@ -6,6 +6,7 @@
 #include <span>
 
 #include "dseam/base/arena.hpp"
+#include "dseam/base/lanes.hpp"
 #include "dseam/base/result.hpp"
 #include "dseam/markers/marker.hpp"
 
@@ -45,8 +46,9 @@ class BlobFinder {
   };
 
   [[nodiscard]] static constexpr std::size_t bytes(std::uint32_t width) noexcept {
-    return Arena::bytes<Blob>(kMaxBlobs) + Arena::bytes<std::uint32_t>(width) +
-           2 * Arena::bytes<Run>(width);
+    return Arena::bytes<Blob>(kMaxBlobs) + Arena::bytes<std::uint8_t>(width) +
+           Arena::bytes<std::uint32_t>(width + lanes::kLanes) +
+           Arena::bytes<std::uint32_t>(width + 1 + lanes::kLanes) + 2 * Arena::bytes<Run>(width);
   }
   /// Errors:  kInvalidArgument, kOutOfMemory.
   [[nodiscard]] static Result<BlobFinder> make(const Config& config, std::uint32_t width,
@@ -67,7 +69,19 @@ class BlobFinder {
   static constexpr std::uint32_t kNoBlob = 0xFFFFFFFFU;
 
   BlobFinder() = default;
-  void add_row(std::span<const std::uint8_t> gray, std::int32_t row, std::int32_t sign) noexcept;
+  /// Of eight pixels, a bit each: lighter, or darker, than the mean around them.
+  struct Signs {
+    std::uint32_t light;
+    std::uint32_t dark;
+  };
+  struct RunReader;
+  void slide_window(std::span<const std::uint8_t> entering,
+                    std::span<const std::uint8_t> leaving) noexcept;
+  void sum_columns() noexcept;
+  [[nodiscard]] std::int32_t sign_at(std::span<const std::uint8_t> row, std::uint32_t u,
+                                     std::uint32_t rows_in_window) const noexcept;
+  [[nodiscard]] Signs eight_signs_at(std::span<const std::uint8_t> row, std::uint32_t u,
+                                     std::uint32_t rows_in_window) const noexcept;
   std::size_t find_runs(std::span<const std::uint8_t> row, std::uint32_t rows_in_window) noexcept;
   void connect(std::size_t count, std::size_t count_above, std::uint16_t v,
                Report& report) noexcept;
@@ -80,7 +94,9 @@ class BlobFinder {
   std::uint32_t width_ = 0;
   std::span<Blob> blobs_;
   std::size_t num_blobs_ = 0;
+  std::span<std::uint8_t> no_row_;  ///< Of zeros.
   std::span<std::uint32_t> column_sums_;
+  std::span<std::uint32_t> sums_before_;
   std::span<Run> runs_;
   std::span<Run> runs_above_;
 };

@@ -11,6 +11,7 @@
 #include "dseam/depth/depth_image.hpp"
 #include "dseam/markers/blob_finder.hpp"
 #include "dseam/markers/marker.hpp"
+#include "dseam/markers/ring_pixels.hpp"
 
 namespace dseam::markers {
 
@@ -19,7 +20,7 @@ struct EllipseEdge;
 /// Finds round marker discs in the gray image, and their centres in space from the depth around.
 ///
 /// Frame:   camera.
-/// Memory:  the blob finder's, from the arena.
+/// Memory:  the blob finder's and 50 kB, from the arena.
 /// Time:    O(pixels) with a small constant, then O(candidates).
 /// Errors:  a frame without gray or of another size gives no markers and says so in the report.
 class MarkerFinder {
@@ -53,7 +54,7 @@ class MarkerFinder {
   };
 
   [[nodiscard]] static constexpr std::size_t bytes(std::uint32_t width) noexcept {
-    return BlobFinder::bytes(width);
+    return BlobFinder::bytes(width) + RingPixels::bytes();
   }
   /// Errors:  kInvalidArgument, kOutOfMemory.
   [[nodiscard]] static Result<MarkerFinder> make(const Config& config, std::uint32_t width,
@@ -62,16 +63,17 @@ class MarkerFinder {
   Report run(const depth::DepthImage& frame, Buffer<Marker>& out) noexcept;
 
  private:
-  MarkerFinder(const Config& config, std::uint32_t width, BlobFinder blobs) noexcept
-      : config_(config), width_(width), blobs_(blobs) {}
+  MarkerFinder(const Config& config, std::uint32_t width, BlobFinder blobs, Arena& arena) noexcept
+      : config_(config), width_(width), blobs_(blobs), ring_(arena) {}
   void examine(const depth::DepthImage& frame, const Blob& blob, Report& report,
-               Buffer<Marker>& out) const noexcept;
+               Buffer<Marker>& out) noexcept;
   bool lay(const depth::DepthImage& frame, const EllipseEdge& edge, Marker& marker,
-           Report& report) const noexcept;
+           Report& report) noexcept;
 
   Config config_;
   std::uint32_t width_;
   BlobFinder blobs_;
+  RingPixels ring_;
 };
 
 }  // namespace dseam::markers

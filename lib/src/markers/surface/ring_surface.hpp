@@ -6,6 +6,7 @@
 
 #include "dseam/depth/depth_image.hpp"
 #include "dseam/geometry/ellipse.hpp"
+#include "dseam/markers/ring_pixels.hpp"
 
 namespace dseam::markers {
 
@@ -39,7 +40,7 @@ struct TangentQuadric {
   [[nodiscard]] Eigen::Vector3d meet(const depth::Intrinsics& k, double u, double v) const noexcept;
 };
 
-/// The surface around a rim, from the depth of a ring beside it.
+/// The surface around a rim, from the depth of a ring beside it, for which `ring` is lent.
 ///
 /// Time:    a bounded number of pixels, whatever the size of the disc.
 struct RingSurface {
@@ -47,7 +48,8 @@ struct RingSurface {
   TangentQuadric tangent;
 };
 [[nodiscard]] std::optional<RingSurface> fit_ring(const depth::DepthImage& frame,
-                                                  const geometry::Ellipse& rim) noexcept;
+                                                  const geometry::Ellipse& rim,
+                                                  RingPixels& ring) noexcept;
 
 /// Whether depth inside the rim lies off the surface around it.
 [[nodiscard]] bool is_hole(const depth::DepthImage& frame, const geometry::Ellipse& rim,

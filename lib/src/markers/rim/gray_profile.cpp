@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "markers/gray_profile.hpp"
+#include "markers/rim/gray_profile.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -120,12 +120,13 @@ Shading shading_about(const depth::DepthImage& frame, const geometry::Ellipse& r
   const auto u0 = static_cast<int>(rim.u);
   const auto v0 = static_cast<int>(rim.v);
   const auto far = static_cast<int>(out);
+  const geometry::EllipseGauge gauge(rim);
   for (int v = v0 - far; v <= v0 + far; v += step) {
     for (int u = u0 - far; u <= u0 + far; u += step) {
       if (!inside_image(frame, u, v)) {
         continue;
       }
-      const double beyond_px = (rim.relative_radius(u, v) - 1.0) * rim.b;
+      const double beyond_px = (gauge.radius(u, v) - 1.0) * rim.b;
       if (std::abs(beyond_px) < kRimPx || beyond_px > reach_px) {
         continue;
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "markers/ellipse_edge.hpp"
+#include "markers/rim/ellipse_edge.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "dseam/geometry/symmetric_matrix.hpp"
-#include "markers/gray_profile.hpp"
+#include "markers/rim/gray_profile.hpp"
 
 namespace dseam::markers {
 namespace {
@@ -51,10 +51,14 @@ Conic row(double x, double y) noexcept {
   return r;
 }
 
-double sampson(const Conic& q, double x, double y) noexcept {
+double squared_slope(const Conic& q, double x, double y) noexcept {
   const double gx = 2.0 * q(0) * x + q(1) * y + q(3);
   const double gy = q(1) * x + 2.0 * q(2) * y + q(4);
-  return (q.dot(row(x, y)) - 1.0) / std::max(std::hypot(gx, gy), 1e-9);
+  return gx * gx + gy * gy;
+}
+
+double sampson(const Conic& q, double x, double y) noexcept {
+  return (q.dot(row(x, y)) - 1.0) / std::max(std::sqrt(squared_slope(q, x, y)), 1e-9);
 }
 
 std::optional<geometry::Ellipse> to_ellipse(const Conic& q,
@@ -91,10 +95,8 @@ ConicFit fit_conic(const Edges& edges, const geometry::Ellipse& frame) noexcept 
       const double x = (edges.points[i].p_px.x() - frame.u) / frame.a;
       const double y = (edges.points[i].p_px.y() - frame.v) / frame.a;
       const double s = sampson(q, x, y) / gate;
-      const double slope =
-          std::hypot(2.0 * q(0) * x + q(1) * y + q(3), q(1) * x + 2.0 * q(2) * y + q(4));
       const double robust = s * s < 1.0 ? (1.0 - s * s) * (1.0 - s * s) : 0.0;
-      const double w = robust / std::max(slope * slope, 1e-6);
+      const double w = robust / std::max(squared_slope(q, x, y), 1e-6);
       h.noalias() += w * row(x, y) * row(x, y).transpose();
       g += w * row(x, y);
     }
@@ -117,13 +119,13 @@ ConicFit fit_conic(const Edges& edges, const geometry::Ellipse& frame) noexcept 
 // The edges that lie on the ellipse.
 void keep_rim(const Edges& edges, EllipseEdge& out) noexcept {
   const double gate = std::max(4.0 * out.rms_px, 0.1);
+  const geometry::EllipseGauge gauge(out.ellipse);
   std::array<double, EllipseEdge::kProfiles> residuals{};
   out.num_rim = 0;
   for (std::size_t i = 0; i < edges.count; ++i) {
     const Eigen::Vector2d& p = edges.points[i].p_px;
     const Eigen::Vector2d from = p - Eigen::Vector2d(out.ellipse.u, out.ellipse.v);
-    const double relative = out.ellipse.relative_radius(p.x(), p.y());
-    const double off = (1.0 - 1.0 / relative) * from.norm();
+    const double off = (1.0 - 1.0 / gauge.radius(p.x(), p.y())) * from.norm();
     if (std::abs(off) < gate) {
       residuals[out.num_rim] = off;
       out.rim_px[out.num_rim++] = p;

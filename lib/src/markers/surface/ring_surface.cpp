@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "markers/ring_surface.hpp"
+#include "markers/surface/ring_surface.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -9,14 +8,12 @@
 #include <numbers>
 
 #include "dseam/geometry/cylinder_fit.hpp"
+#include "markers/surface/image_window.hpp"
+#include "markers/surface/quadratic_sums.hpp"
 
 namespace dseam::markers {
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
-constexpr double kInnerRing = 1.25;
-constexpr double kOuterRing = 2.5;
 constexpr double kMaxGateMm = 2.0;
 
 Vector6 quadratic(double x, double y) noexcept {
@@ -29,54 +26,20 @@ Eigen::Vector3d ray(const depth::Intrinsics& k, double u, double v) noexcept {
   return {(u - k.cx) / k.fx, (v - k.cy) / k.fy, 1.0};
 }
 
-struct Window {
-  std::uint32_t u0, u1, v0, v1, step;
-};
-
-Window window_around(const depth::DepthImage& frame, const geometry::Ellipse& rim,
-                     double reach) noexcept {
-  const auto limit = [](double x, std::uint32_t size) {
-    return static_cast<std::uint32_t>(std::clamp(x, 0.0, static_cast<double>(size)));
-  };
-  const double r = reach * rim.a;
-  const auto step = static_cast<std::uint32_t>(std::clamp(r / 20.0, 1.0, 1e4));
-  return {limit(rim.u - r, frame.intrinsics.width), limit(rim.u + r + 1.0, frame.intrinsics.width),
-          limit(rim.v - r, frame.intrinsics.height),
-          limit(rim.v + r + 1.0, frame.intrinsics.height), step};
+Vector6 from_base(const RingPixels& ring, Vector6 q) noexcept {
+  q(0) -= ring.base_mm();
+  return q;
 }
 
-struct RingSums {
-  Matrix6 h = Matrix6::Zero();
-  Vector6 g = Vector6::Zero();
-  double squares = 0.0;
-  double used = 0.0;
-  double valid = 0.0;
-};
-
-RingSums sum_ring(const depth::DepthImage& frame, const geometry::Ellipse& rim,
-                  const DepthQuadric& surface, double gate_mm) noexcept {
-  RingSums sums;
-  const Window w = window_around(frame, rim, kOuterRing);
-  for (std::uint32_t v = w.v0; v < w.v1; v += w.step) {
-    for (std::uint32_t u = w.u0; u < w.u1; u += w.step) {
-      const std::uint16_t count = frame.count_at(u, v);
-      const double relative = rim.relative_radius(u, v);
-      if (count == 0 || relative < kInnerRing || relative > kOuterRing) {
-        continue;
-      }
-      sums.valid += 1.0;
-      const double z = count * frame.mm_per_count;
-      const double residual = z - surface.z(u, v);
-      if (std::abs(residual) > gate_mm) {
-        continue;
-      }
-      const Vector6 r = quadratic((u - surface.u) / surface.scale, (v - surface.v) / surface.scale);
-      sums.h.noalias() += r * r.transpose();
-      sums.g += residual * r;
-      sums.squares += residual * residual;
-      sums.used += 1.0;
-    }
-  }
+// What the ring's depth leaves of the surface, where it lies near it.
+QuadraticSums residuals_of(const RingPixels& ring, const Vector6& q, double gate_mm) noexcept {
+  QuadraticSums sums;
+  const QuadraticLanes surface(from_base(ring, q));
+  const lanes::FloatLanes gate = lanes::splat(static_cast<float>(gate_mm));
+  ring.for_each_eight([&](const RingPixels::Eight& p) {
+    const lanes::FloatLanes residual = p.beyond_mm - surface.at(p.x, p.y);
+    sums.add(p.x, p.y, residual, lanes::magnitude(residual) <= gate);
+  });
   return sums;
 }
 
@@ -105,7 +68,7 @@ double start_depth(const depth::DepthImage& frame, const geometry::Ellipse& rim)
   return *middle;
 }
 
-bool fit_surface(const depth::DepthImage& frame, const geometry::Ellipse& rim,
+bool fit_surface(const depth::DepthImage& frame, const geometry::Ellipse& rim, RingPixels& ring,
                  DepthQuadric& surface) noexcept {
   surface.u = rim.u;
   surface.v = rim.v;
@@ -114,15 +77,16 @@ bool fit_surface(const depth::DepthImage& frame, const geometry::Ellipse& rim,
   if (!(surface.q(0) > 0.0)) {
     return false;
   }
+  ring.gather(frame, rim, surface.q(0));
   // The first gate lets a steep surface in; the last keeps flying pixels out.
-  double gate = std::max(kMaxGateMm, 4.0 * kOuterRing * rim.a * surface.q(0) / frame.intrinsics.fx);
+  double gate = std::max(kMaxGateMm, 10.0 * rim.a * surface.q(0) / frame.intrinsics.fx);
   for (int round = 0; round < 6; ++round) {
-    const RingSums sums = sum_ring(frame, rim, surface, gate);
-    if (sums.used < 24.0 || sums.used < 0.5 * sums.valid) {
+    const QuadraticSums sums = residuals_of(ring, surface.q, gate);
+    if (sums.count() < 24 || 2 * sums.count() < ring.size()) {
       return false;
     }
-    surface.q += sums.h.ldlt().solve(sums.g);
-    const double rms = std::sqrt(sums.squares / sums.used);
+    surface.q += sums.solve();
+    const double rms = std::sqrt(sums.mean_square());
     gate = std::max(0.06, std::min(gate, round == 0 ? rms : 3.0 * rms));
   }
   surface.gate_mm = gate;
@@ -138,31 +102,38 @@ Eigen::Vector3d normal_at_centre(const depth::Intrinsics& k, const DepthQuadric&
   return n.z() > 0.0 ? Eigen::Vector3d(-n) : n;
 }
 
-// One fit of heights over the plane through `t.origin` across `t.normal`.
-bool fit_heights(const depth::DepthImage& frame, const geometry::Ellipse& rim,
-                 const DepthQuadric& surface, TangentQuadric& t) noexcept {
+// One fit of heights over the plane through `t.origin` across `t.normal`. In floats, a place is
+// what its ray differs from the centre's and its depth from the base.
+bool fit_heights(const depth::Intrinsics& k, const RingPixels& ring, const DepthQuadric& surface,
+                 TangentQuadric& t) noexcept {
+  using lanes::splat;
   geometry::orthonormal_base(t.normal, t.e1, t.e2);
-  const double scale = rim.a * t.origin.z() / frame.intrinsics.fx;
-  Matrix6 h = Matrix6::Zero();
-  Vector6 g = Vector6::Zero();
-  const Window w = window_around(frame, rim, kOuterRing);
-  for (std::uint32_t v = w.v0; v < w.v1; v += w.step) {
-    for (std::uint32_t u = w.u0; u < w.u1; u += w.step) {
-      const double z = frame.count_at(u, v) * frame.mm_per_count;
-      const double relative = rim.relative_radius(u, v);
-      if (z == 0.0 || relative < kInnerRing || relative > kOuterRing ||
-          std::abs(z - surface.z(u, v)) > surface.gate_mm) {
-        continue;
-      }
-      const Eigen::Vector3d p = ray(frame.intrinsics, u, v) * z - t.origin;
-      const Vector6 r = quadratic(t.e1.dot(p) / scale, t.e2.dot(p) / scale);
-      h.noalias() += r * r.transpose();
-      g += r * t.normal.dot(p);
-    }
-  }
+  const double scale = surface.scale * t.origin.z() / k.fx;
+  const QuadraticLanes depth(from_base(ring, surface.q));
+  const Eigen::Vector3d centre = ray(k, surface.u, surface.v);
+  const Eigen::Vector3f start = (centre * ring.base_mm() - t.origin).cast<float>();
+  QuadraticSums heights;
+  ring.for_each_eight([&](const RingPixels::Eight& p) {
+    const lanes::FloatLanes z = splat(static_cast<float>(ring.base_mm())) + p.beyond_mm;
+    const auto across = [&](double ray_of_centre, double of_half_axis, float from_origin,
+                            const lanes::FloatLanes& half_axes) noexcept {
+      return splat(from_origin) + splat(static_cast<float>(ray_of_centre)) * p.beyond_mm +
+             splat(static_cast<float>(of_half_axis)) * half_axes * z;
+    };
+    const lanes::FloatLanes px = across(centre.x(), surface.scale / k.fx, start.x(), p.x);
+    const lanes::FloatLanes py = across(centre.y(), surface.scale / k.fy, start.y(), p.y);
+    const lanes::FloatLanes pz = splat(start.z()) + p.beyond_mm;
+    const auto along = [&](const Eigen::Vector3d& axis) noexcept {
+      const Eigen::Vector3f d = axis.cast<float>();
+      return splat(d.x()) * px + splat(d.y()) * py + splat(d.z()) * pz;
+    };
+    const lanes::FloatLanes off = lanes::magnitude(p.beyond_mm - depth.at(p.x, p.y));
+    heights.add(along(t.e1 / scale), along(t.e2 / scale), along(t.normal),
+                off <= splat(static_cast<float>(surface.gate_mm)));
+  });
   Vector6 to_mm;
   to_mm << 1.0, 1.0 / scale, 1.0 / scale, Eigen::Vector3d::Constant(1.0 / (scale * scale));
-  t.q = Vector6(h.ldlt().solve(g)).cwiseProduct(to_mm);
+  t.q = heights.solve().cwiseProduct(to_mm);
   return t.q.allFinite();
 }
 
@@ -190,17 +161,17 @@ Eigen::Vector3d TangentQuadric::meet(const depth::Intrinsics& k, double u,
   return r * t;
 }
 
-std::optional<RingSurface> fit_ring(const depth::DepthImage& frame,
-                                    const geometry::Ellipse& rim) noexcept {
+std::optional<RingSurface> fit_ring(const depth::DepthImage& frame, const geometry::Ellipse& rim,
+                                    RingPixels& ring) noexcept {
   RingSurface out;
-  if (!fit_surface(frame, rim, out.depth)) {
+  if (!fit_surface(frame, rim, ring, out.depth)) {
     return std::nullopt;
   }
   TangentQuadric& t = out.tangent;
   t.origin = ray(frame.intrinsics, rim.u, rim.v) * out.depth.z(rim.u, rim.v);
   t.normal = normal_at_centre(frame.intrinsics, out.depth);
   for (int round = 0; round < 2; ++round) {
-    if (!fit_heights(frame, rim, out.depth, t)) {
+    if (!fit_heights(frame.intrinsics, ring, out.depth, t)) {
       return std::nullopt;
     }
     if (round == 0) {
@@ -213,19 +184,18 @@ std::optional<RingSurface> fit_ring(const depth::DepthImage& frame,
 
 bool is_hole(const depth::DepthImage& frame, const geometry::Ellipse& rim, const DepthQuadric& s,
              double max_depth_mm) noexcept {
-  const Window w = window_around(frame, rim, 0.8);
+  constexpr double kInside = 0.8;
+  const geometry::EllipseGauge gauge(rim);
   double valid = 0.0;
   double off = 0.0;
-  for (std::uint32_t v = w.v0; v < w.v1; v += w.step) {
-    for (std::uint32_t u = w.u0; u < w.u1; u += w.step) {
-      const std::uint16_t count = frame.count_at(u, v);
-      if (count == 0 || rim.relative_radius(u, v) > 0.8) {
-        continue;
-      }
-      valid += 1.0;
-      off += std::abs(count * frame.mm_per_count - s.z(u, v)) > max_depth_mm ? 1.0 : 0.0;
+  for_each_around(frame, rim, kInside, [&](std::uint32_t u, std::uint32_t v) {
+    const std::uint16_t count = frame.count_at(u, v);
+    if (count == 0 || gauge.squared_radius(u, v) > kInside * kInside) {
+      return;
     }
-  }
+    valid += 1.0;
+    off += std::abs(count * frame.mm_per_count - s.z(u, v)) > max_depth_mm ? 1.0 : 0.0;
+  });
   return off > 3.0 && off > 0.25 * valid;
 }
 

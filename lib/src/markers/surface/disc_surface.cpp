@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "markers/disc_surface.hpp"
+#include "markers/surface/disc_surface.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "markers/ring_surface.hpp"
+#include "markers/surface/ring_surface.hpp"
 
 namespace dseam::markers {
 namespace {
@@ -41,9 +41,9 @@ void fit_circle(const depth::Intrinsics& k, std::span<const Eigen::Vector2d> rim
 }  // namespace
 
 SurfaceDisc lay_on_surface(const depth::DepthImage& frame, const EllipseEdge& edge,
-                           double max_hole_depth_mm) noexcept {
+                           double max_hole_depth_mm, RingPixels& ring) noexcept {
   SurfaceDisc disc;
-  const auto surface = fit_ring(frame, edge.ellipse);
+  const auto surface = fit_ring(frame, edge.ellipse, ring);
   if (!surface) {
     return disc;
   }

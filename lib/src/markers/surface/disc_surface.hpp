@@ -5,7 +5,8 @@
 #include <cstdint>
 
 #include "dseam/depth/depth_image.hpp"
-#include "markers/ellipse_edge.hpp"
+#include "dseam/markers/ring_pixels.hpp"
+#include "markers/rim/ellipse_edge.hpp"
 
 namespace dseam::markers {
 
@@ -28,8 +29,9 @@ struct SurfaceDisc {
 /// the ellipse, since the rim of a disc on a pipe is none, by a hundredth of a pixel on a small
 /// one.
 ///
+/// Memory:  `ring`, which is lent.
 /// Time:    a bounded number of pixels, whatever the size of the disc.
 [[nodiscard]] SurfaceDisc lay_on_surface(const depth::DepthImage& frame, const EllipseEdge& edge,
-                                         double max_hole_depth_mm) noexcept;
+                                         double max_hole_depth_mm, RingPixels& ring) noexcept;
 
 }  // namespace dseam::markers
