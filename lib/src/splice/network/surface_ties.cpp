@@ -254,6 +254,7 @@ double SurfaceStatistics::sigma_mm() const noexcept {
   return pairs[0] > 0.0 ? std::sqrt(0.5 * products[0] / pairs[0]) : 0.0;
 }
 
+// Shares are as often below zero as above where nothing hangs together: only their sum is bounded.
 double SurfaceStatistics::ties_per_independent() const noexcept {
   if (!(products[0] > 0.0)) {
     return 1.0;
@@ -261,9 +262,9 @@ double SurfaceStatistics::ties_per_independent() const noexcept {
   const double variance = products[0] / pairs[0];
   double along_a_row = 1.0;
   for (std::size_t lag = 1; lag < pairs.size(); ++lag) {
-    const double share = pairs[lag] > 0.0 ? products[lag] / pairs[lag] / variance : 0.0;
-    along_a_row += 2.0 * std::clamp(share, 0.0, 1.0);
+    along_a_row += pairs[lag] > 0.0 ? 2.0 * products[lag] / pairs[lag] / variance : 0.0;
   }
+  along_a_row = std::max(1.0, along_a_row);
   return along_a_row * along_a_row;
 }
 
