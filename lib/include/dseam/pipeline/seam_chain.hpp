@@ -44,6 +44,9 @@ struct SeamInput {
 
 /// From a fused cloud to the one closed seam in it, or to the reason why there is none.
 ///
+/// Where too little was seen of a ring on a plane, the joint is sought once more at the nozzles'
+/// feet (seam::FootSearch) before it is refused.
+///
 /// Frame:   base.
 /// Memory:  `bytes()` from the arena at make(); run() takes none.
 /// Time:    bounded by the capacities; linear in points and pixels.
@@ -83,7 +86,11 @@ class SeamChain {
 
   SeamChain(const Config& config, const Capacity& capacity, Arena& arena) noexcept;
 
-  bool find_joint(const SeamInput& in, seam::SeamReport& report, seam::Joint& joint) noexcept;
+  enum class Search : std::uint8_t { kSurfaces, kFeet };
+  bool attempt(const SeamInput& in, Search search, seam::SeamReport& report,
+               Buffer<seam::SeamPoint>& out) noexcept;
+  bool find_joint(const SeamInput& in, Search search, seam::SeamReport& report,
+                  seam::Joint& joint) noexcept;
   bool fit_joint(const SeamInput& in, const seam::Joint& joint, seam::SeamReport& report) noexcept;
   bool find_edges(const SeamInput& in, seam::SeamReport& report) noexcept;
   bool scan_edge(const SeamInput& in, seam::EndingSurface::Which which,

@@ -45,6 +45,22 @@ seam::RingHint hint_of(const SeamInput& in, Viewpoints& storage) noexcept {
   return hint;
 }
 
+// So little of a ring was seen that it may be the wrong one. A plane through parts of several
+// surfaces is easily found; other surfaces are not.
+bool is_badly_seen(const seam::SeamReport& report) noexcept {
+  constexpr double kWellSeen = 0.8;
+  switch (report.refusal) {
+    case Refusal::kNoRing:
+      return true;
+    case Refusal::kTwoRings:
+      return report.candidates[0].coverage < kWellSeen;
+    case Refusal::kLowCoverage:
+      return report.joint.shell.kind == seam::SurfaceKind::kPlane;
+    default:
+      return false;
+  }
+}
+
 Refusal too_few_surfaces(std::span<const seam::FoundSurface> surfaces) noexcept {
   const bool plane = !surfaces.empty() && surfaces[0].surface.kind == seam::SurfaceKind::kPlane;
   return surfaces.size() == 1 && plane ? Refusal::kCoplanar : Refusal::kOneSurface;
@@ -84,16 +100,30 @@ Result<SeamChain> SeamChain::make(const Config& config, const Capacity& capacity
 
 seam::SeamReport SeamChain::run(const SeamInput& in, Buffer<seam::SeamPoint>& out) noexcept {
   seam::SeamReport report;
-  report.reference = in.reference.value_or(config_.reference);
-  out.clear();
-  seam::Joint joint;
-  if (find_joint(in, report, joint) && fit_joint(in, joint, report) && find_edges(in, report)) {
-    build_curve(in, report, out);
+  attempt(in, Search::kSurfaces, report, out);
+  if (is_badly_seen(report) && !attempt(in, Search::kFeet, report, out)) {
+    attempt(in, Search::kSurfaces, report, out);
   }
   return report;
 }
 
-bool SeamChain::find_joint(const SeamInput& in, seam::SeamReport& report,
+// True where there are two surfaces to fit, whatever becomes of the seam.
+bool SeamChain::attempt(const SeamInput& in, Search search, seam::SeamReport& report,
+                        Buffer<seam::SeamPoint>& out) noexcept {
+  report = {};
+  report.reference = in.reference.value_or(config_.reference);
+  out.clear();
+  seam::Joint joint;
+  if (!find_joint(in, search, report, joint) || !fit_joint(in, joint, report)) {
+    return false;
+  }
+  if (find_edges(in, report)) {
+    build_curve(in, report, out);
+  }
+  return true;
+}
+
+bool SeamChain::find_joint(const SeamInput& in, Search search, seam::SeamReport& report,
                            seam::Joint& joint) noexcept {
   const seam::CellMap::Report cells = cells_.run(in.cloud_base);
   report.refusal = enter_cells(cells, report);
@@ -109,8 +139,11 @@ bool SeamChain::find_joint(const SeamInput& in, seam::SeamReport& report,
     return false;
   }
   Viewpoints viewpoints;
+  const seam::RingHint hint = hint_of(in, viewpoints);
   const seam::RingFinder::Choice choice =
-      rings_.run(cells_.cells(), surfaces, cells.scale, hint_of(in, viewpoints), report);
+      search == Search::kSurfaces ? rings_.run(cells_.cells(), surfaces, cells.scale, hint, report)
+                                  : rings_.run_at_feet(in.cloud_base.points, cells_.cells(),
+                                                       surfaces, cells.scale, hint, report);
   report.refusal = choice.refusal;
   joint = choice.joint;
   bore_ = choice.bore;
@@ -119,7 +152,8 @@ bool SeamChain::find_joint(const SeamInput& in, seam::SeamReport& report,
 
 bool SeamChain::fit_joint(const SeamInput& in, const seam::Joint& joint,
                           seam::SeamReport& report) noexcept {
-  if (!fit_.run(in.cloud_base.points, joint, bore_, report.spacing_mm, tolerance_mm_)) {
+  if (!fit_.run(in.cloud_base.points, joint, bore_,
+                {report.spacing_mm, report.noise_mm, tolerance_mm_})) {
     report.refusal = Refusal::kLowCoverage;
     return false;
   }

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kTurnRad = 2.0 * std::numbers::pi;
 constexpr double kInnerSpacings = 2.0;
-constexpr double kPatchMm = 8.0;  // The length over which depth noise hangs together.
+constexpr double kBandNoises = 40.0;  // Noise tilts a surface by 1 in 40 at most over the band.
+constexpr double kPatchMm = 8.0;      // The length over which depth noise hangs together.
 constexpr double kMinPatchWeight = 3.0;
 constexpr double kFullPatchWeight = 8.0;
 constexpr std::size_t kMinPoints = 60;
@@ -38,12 +39,13 @@ JointFit::JointFit(std::size_t max_points, Arena& arena) noexcept
 }
 
 bool JointFit::run(const cloud::CloudView& cloud, const Joint& found,
-                   const std::optional<Surface>& bore, double spacing_mm,
-                   double tolerance_mm) noexcept {
+                   const std::optional<Surface>& bore, const Scales& scales) noexcept {
+  const auto [spacing_mm, noise_mm, tolerance_mm] = scales;
   joint_ = found;
   bore_ = bore;
   follows_model_ = false;
-  band_mm_ = std::clamp(0.5 * found.nozzle.radius_mm, 12.0, 28.0) + 2.0 * spacing_mm;
+  band_mm_ = std::max(std::clamp(0.5 * found.nozzle.radius_mm, 12.0, 28.0) + 2.0 * spacing_mm,
+                      kBandNoises * noise_mm);
   inner_mm_ = kInnerSpacings * spacing_mm;
   const double round = kTurnRad * found.nozzle.radius_mm / std::max(kPatchMm, 3.0 * spacing_mm);
   patches_round_ = static_cast<std::size_t>(std::clamp(round, 24.0, 120.0));

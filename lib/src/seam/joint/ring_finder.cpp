@@ -7,11 +7,12 @@
 #include <numbers>
 #include <optional>
 
+#include "seam/joint/ring_support.hpp"
+
 namespace dseam::seam {
 namespace {
 
 constexpr double kTurnRad = 2.0 * std::numbers::pi;
-constexpr double kSupportRad = 0.61;       // 35 degrees: cells at a joint have blurred normals.
 constexpr double kMinBinShare = 0.25;      // A ring seen less than this is not listed as one.
 constexpr double kEqualShare = 0.80;       // Scores closer than this are equally good.
 constexpr double kRadiusTolerance = 0.15;  // Of the expected radius.
@@ -24,27 +25,8 @@ constexpr double kOutside =
 constexpr double kCoaxialCosine = 0.99;
 constexpr double kMaxOffAxisMm = 5.0;
 constexpr double kMaxOffAxisShare = 0.1;  // Of the radius.
-constexpr double kOtherSideCosine = -0.1;
 constexpr double kSamePlaceShare = 0.15;  // Of the radius.
 constexpr double kSameRadiusShare = 0.1;
-
-// What lies around a ring, bin by bin of the angle about the nozzle.
-struct Support {
-  std::array<std::uint16_t, RingFinder::kBins> shell_outside{};
-  std::array<std::uint16_t, RingFinder::kBins> nozzle_above{};
-  std::array<std::uint16_t, RingFinder::kBins> nozzle_below{};
-};
-
-int bin_of(double phi_rad) noexcept {
-  const double turn = phi_rad / kTurnRad;
-  const int bin = static_cast<int>((turn - std::floor(turn)) * RingFinder::kBins);
-  return std::clamp(bin, 0, RingFinder::kBins - 1);
-}
-
-// A cell without a normal holds a bit of both surfaces: at a joint that speaks for it.
-bool lies_along(const Eigen::Vector3d& normal, const Cell& cell, double cosine) noexcept {
-  return cell.normal.squaredNorm() == 0.0 || std::abs(normal.dot(cell.normal)) > cosine;
-}
 
 using Roots = std::array<Eigen::Vector3d, RingFinder::kBins>;
 
@@ -61,32 +43,6 @@ std::optional<Roots> roots_of(const Joint& joint, const NozzleFrame& frame) noex
     roots[i] = *root;
   }
   return roots;
-}
-
-Support support_of(std::span<const Cell> cells, const Joint& joint, const NozzleFrame& frame,
-                   const CellScale& scale) noexcept {
-  Support s;
-  const double band = std::max(5.0 * scale.cell_mm, 15.0);
-  const double tolerance_mm = scale.tolerance_mm();
-  const double cosine = std::cos(kSupportRad + scale.slack_rad());
-  for (const Cell& cell : cells) {
-    if (shell_normal(joint, cell.mean).dot(joint.nozzle.axis) < kOtherSideCosine) {
-      continue;  // Where the nozzle's axis leaves the shell on its other side.
-    }
-    const double above = shell_distance(joint, cell.mean);
-    const double outside = signed_distance(joint.nozzle, cell.mean);
-    const auto bin = static_cast<std::size_t>(bin_of(angle_about(joint.nozzle, frame, cell.mean)));
-    const bool on_shell =
-        std::abs(above) < tolerance_mm && outside > tolerance_mm && outside < band;
-    const bool on_nozzle = std::abs(outside) < tolerance_mm && std::abs(above) > tolerance_mm &&
-                           std::abs(above) < band;
-    if (on_shell && lies_along(outward_normal(joint.shell, cell.mean), cell, cosine)) {
-      ++s.shell_outside[bin];
-    } else if (on_nozzle && lies_along(outward_normal(joint.nozzle, cell.mean), cell, cosine)) {
-      ++(above > 0.0 ? s.nozzle_above : s.nozzle_below)[bin];
-    }
-  }
-  return s;
 }
 
 bool contains(const RingHint& hint, const Eigen::Vector3d& p) noexcept {
@@ -116,6 +72,24 @@ bool is_bore_of(const RingCandidate& inner, const RingCandidate& outer) noexcept
 // A large ring is seldom backed all round by chance, but easily along a long stretch.
 double merit_of(const RingCandidate& ring) noexcept { return ring.score_mm * ring.coverage; }
 
+bool is_round(const Surface& surface) noexcept {
+  return surface.kind == SurfaceKind::kCylinder || surface.kind == SurfaceKind::kCone;
+}
+
+Surface turned_over(Surface surface) noexcept {
+  surface.axis = -surface.axis;
+  surface.slope = -surface.slope;
+  return surface;
+}
+
+// Where the nozzle's axis meets the plane it stands on.
+Eigen::Vector3d foot_of(const Joint& joint) noexcept {
+  const Surface& nozzle = joint.nozzle;
+  const double along =
+      -signed_distance(joint.shell, nozzle.point) / joint.shell.axis.dot(nozzle.axis);
+  return nozzle.point + along * nozzle.axis;
+}
+
 RingFate fate_of(const RingCandidate& ring, int num_below, const RingHint& hint,
                  const Eigen::Vector3d& any_root) noexcept {
   if (num_below > RingFinder::kBins / 2 && ring.coverage < 0.5) {
@@ -134,28 +108,73 @@ RingFate fate_of(const RingCandidate& ring, int num_below, const RingHint& hint,
 
 }  // namespace
 
+void RingFinder::clear(double half_cell_mm) noexcept {
+  rings_.clear();
+  joints_.clear();
+  feet_.clear();
+  half_cell_mm_ = half_cell_mm;
+}
+
 RingFinder::Choice RingFinder::run(std::span<const Cell> cells,
                                    std::span<const FoundSurface> surfaces, const CellScale& scale,
                                    const RingHint& hint, SeamReport& report) noexcept {
-  rings_.clear();
-  joints_.clear();
+  clear(0.0);
   for (const FoundSurface& nozzle : surfaces) {
-    const SurfaceKind kind = nozzle.surface.kind;
-    if (kind != SurfaceKind::kCylinder && kind != SurfaceKind::kCone) {
+    if (!is_round(nozzle.surface)) {
       continue;
     }
     for (const FoundSurface& shell : surfaces) {
       if (&shell == &nozzle) {
         continue;
       }
-      Joint joint{shell.surface, nozzle.surface};
-      consider(cells, joint, scale, hint);
-      joint.nozzle.axis = -joint.nozzle.axis;
-      joint.nozzle.slope = -joint.nozzle.slope;
-      consider(cells, joint, scale, hint);
+      consider(cells, {shell.surface, nozzle.surface}, scale, hint);
+      consider(cells, {shell.surface, turned_over(nozzle.surface)}, scale, hint);
     }
   }
   return choose(report);
+}
+
+RingFinder::Choice RingFinder::run_at_feet(const cloud::CloudView& cloud,
+                                           std::span<const Cell> cells,
+                                           std::span<const FoundSurface> surfaces,
+                                           const CellScale& scale, const RingHint& hint,
+                                           SeamReport& report) noexcept {
+  clear(0.5 * scale.cell_mm);
+  std::size_t nozzles = 0;
+  for (const FoundSurface& found : surfaces) {
+    if (!is_round(found.surface) || ++nozzles > kMaxFeet / 2) {
+      continue;
+    }
+    for (const Surface& nozzle : {found.surface, turned_over(found.surface)}) {
+      const auto foot = foot_.run(cloud, cells, nozzle, surfaces, scale);
+      if (foot) {
+        keep_foot(*foot);
+      }
+    }
+  }
+  for (const FootSearch::Found& foot : feet_.view()) {
+    consider(cells, foot.joint, scale, hint);
+  }
+  Choice choice = choose(report);
+  for (const FootSearch::Found& foot : feet_.view()) {
+    if (foot.joint.nozzle.point == choice.joint.nozzle.point) {
+      choice.bore = foot.bore;
+    }
+  }
+  return choice;
+}
+
+// Two sides of one wall, or two fits to it, have one foot: the better one stays.
+void RingFinder::keep_foot(const FootSearch::Found& found) noexcept {
+  const auto same = std::ranges::find_if(feet_.items(), [&](const FootSearch::Found& other) {
+    const double near_mm = std::max(found.joint.nozzle.radius_mm, other.joint.nozzle.radius_mm);
+    return (foot_of(found.joint) - foot_of(other.joint)).norm() < near_mm;
+  });
+  if (same == feet_.items().end()) {
+    (void)feet_.append(found);
+  } else if (found.merit > same->merit) {
+    *same = found;
+  }
 }
 
 void RingFinder::consider(std::span<const Cell> cells, const Joint& given, const CellScale& scale,
@@ -176,7 +195,7 @@ void RingFinder::consider(std::span<const Cell> cells, const Joint& given, const
   }
   const Roots& roots = *closed;
   RingCandidate ring;
-  const Support support = support_of(cells, joint, frame, scale);
+  const RingSupport support = support_of(cells, joint, frame, scale, half_cell_mm_);
   int num_both = 0;
   int num_below = 0;
   int num_past = 0;

@@ -32,6 +32,12 @@ struct NearPoint {
 /// Memory:  `bytes()` from the arena.
 class JointFit {
  public:
+  /// Of the cloud's points: their distance, their scatter, and how far one may lie off its surface.
+  struct Scales {
+    double spacing_mm = 0.0;
+    double noise_mm = 0.0;
+    double tolerance_mm = 0.0;
+  };
   /// One of the two surfaces near the joint.
   struct Side {
     Buffer<NearPoint> points;
@@ -51,7 +57,7 @@ class JointFit {
   ///
   /// `bore` is the inside of the nozzle's wall, if it was seen: its points are not the outside's.
   bool run(const cloud::CloudView& cloud, const Joint& found, const std::optional<Surface>& bore,
-           double spacing_mm, double tolerance_mm) noexcept;
+           const Scales& scales) noexcept;
 
   [[nodiscard]] const Joint& joint() const noexcept { return joint_; }
   [[nodiscard]] const NozzleFrame& frame() const noexcept { return frame_; }

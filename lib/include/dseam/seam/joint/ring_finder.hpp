@@ -7,6 +7,7 @@
 
 #include "dseam/base/arena.hpp"
 #include "dseam/base/buffer.hpp"
+#include "dseam/seam/joint/foot_search.hpp"
 #include "dseam/seam/joint/joint.hpp"
 #include "dseam/seam/seam_report.hpp"
 #include "dseam/seam/surface/surface_finder.hpp"
@@ -39,17 +40,29 @@ class RingFinder {
   };
 
   [[nodiscard]] static constexpr std::size_t bytes() noexcept {
-    return Arena::bytes<RingCandidate>(kMaxRings) + Arena::bytes<Joint>(kMaxRings);
+    return Arena::bytes<RingCandidate>(kMaxRings) + Arena::bytes<Joint>(kMaxRings) +
+           Arena::bytes<FootSearch::Found>(kMaxFeet) + FootSearch::bytes();
   }
   RingFinder() = default;
   explicit RingFinder(Arena& arena) noexcept
-      : rings_(arena.take<RingCandidate>(kMaxRings)), joints_(arena.take<Joint>(kMaxRings)) {}
+      : rings_(arena.take<RingCandidate>(kMaxRings)),
+        joints_(arena.take<Joint>(kMaxRings)),
+        feet_(arena.take<FootSearch::Found>(kMaxFeet)),
+        foot_(arena) {}
 
   Choice run(std::span<const Cell> cells, std::span<const FoundSurface> surfaces,
              const CellScale& scale, const RingHint& hint, SeamReport& report) noexcept;
+  /// The same where too little was seen: of the largest nozzles each stands on the plane that is
+  /// found at its foot. `cells` and `surfaces` are those of the cloud.
+  Choice run_at_feet(const cloud::CloudView& cloud, std::span<const Cell> cells,
+                     std::span<const FoundSurface> surfaces, const CellScale& scale,
+                     const RingHint& hint, SeamReport& report) noexcept;
 
  private:
   static constexpr std::size_t kMaxRings = 64;
+  static constexpr std::size_t kMaxFeet = 8;
+  void clear(double half_cell_mm) noexcept;
+  void keep_foot(const FootSearch::Found& found) noexcept;
   void consider(std::span<const Cell> cells, const Joint& joint, const CellScale& scale,
                 const RingHint& hint) noexcept;
   void keep(const RingCandidate& ring, const Joint& joint) noexcept;
@@ -59,6 +72,9 @@ class RingFinder {
 
   Buffer<RingCandidate> rings_;
   Buffer<Joint> joints_;
+  Buffer<FootSearch::Found> feet_;
+  FootSearch foot_;
+  double half_cell_mm_ = 0.0;  // How far to both sides of its mean a cell tells of the ring.
 };
 
 }  // namespace dseam::seam
