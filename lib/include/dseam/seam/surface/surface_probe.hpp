@@ -53,7 +53,7 @@ class SurfaceProbe {
   }
   /// As distance_jacobian() says; `frame` is across() of the surface's axis.
   [[gnu::always_inline, nodiscard]] SurfaceVector jacobian(const Contact& contact,
-                                       const AcrossAxis& frame) const noexcept {
+                                                           const AcrossAxis& frame) const noexcept {
     const Surface& s = surface_;
     SurfaceVector j = SurfaceVector::Zero();
     if (s.kind == SurfaceKind::kPlane) {

@@ -52,8 +52,8 @@ enum class AravisState : std::uint8_t { kIdle, kStreaming, kStalled, kLost };
 ///
 /// Memory:  one mapping with `num_buffers` frames, filled by Aravis in place. Aravis' receiving
 ///          thread allocates about 3 kB a frame; the caller's thread nothing.
-/// Time:    stop() returns at once; the destructor within 6 s, also when the device is gone: it waits
-///          3 s for Aravis and then cuts the line on which that waits for answers.
+/// Time:    stop() returns at once; the destructor within 6 s, also when the device is gone: it
+///          waits 3 s for Aravis and then cuts the line on which that waits for answers.
 class AravisCamera final : public DepthCamera {
  public:
   /// Opens a camera. On failure `problem` says why, and what to do about it.
