@@ -19,21 +19,23 @@ Vector6 Adjustment::offset_effect(std::size_t v) const noexcept {
 }
 
 // The information says how far the poses give way to an error of the surfaces, and for that noise
-// in the normals must not count; how large that error is, noise included, is what the steps go by.
-// False where without the noise a direction is free.
+// in the normals must not count; how large that error is, noise included, is what the steps go by,
+// but for how it spreads by facing. False where without the noise a direction is free.
 bool Adjustment::invert_information() noexcept {
+  const std::array<double, kFacings> spread = surface.spread();
   assemble(true);
   const bool known = system.factorise();
   if (known) {
     system.invert();
+    assemble(false, spread);
+    system.sandwich();
+    return true;
   }
   assemble(false);
-  if (known) {
-    system.sandwich();
-  } else if (system.factorise()) {
+  if (system.factorise()) {
     system.invert();
   }
-  return known;
+  return false;
 }
 
 // Of what all views have in common; each view's covariance with it is left on the joint diagonal.

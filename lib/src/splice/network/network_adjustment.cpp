@@ -131,20 +131,21 @@ void Adjustment::add_reports() noexcept {
   system.add_gradient(bowl_at(), Eigen::Vector2d(bowl_weight * report.bowl_mm));
 }
 
-void Adjustment::assemble_ties(bool without_noise) noexcept {
+void Adjustment::assemble_ties(bool without_noise,
+                               const std::array<double, kFacings>& spread) noexcept {
   system.reset(bowl_at() + 2);
   surface = {};
   markers = {};
   const double variance = sigma_mm * sigma_mm * ties_per_independent;
-  const SurfaceTieConfig ties{gate_mm, config.start_gate_mm, 1.0 / variance, without_noise};
+  const SurfaceTieConfig ties{gate_mm, config.start_gate_mm, 1.0 / variance, without_noise, spread};
   report.num_surface_ties =
       add_surface_ties(views, pivot, report.bowl_mm, ties, bowl_at(), system, surface);
   add_marker_ties(views, sights, pivot, report.bowl_mm, marker_variance_factor, bowl_at(), system,
                   markers);
 }
 
-void Adjustment::assemble(bool without_noise) noexcept {
-  assemble_ties(without_noise);
+void Adjustment::assemble(bool without_noise, const std::array<double, kFacings>& spread) noexcept {
+  assemble_ties(without_noise, spread);
   for (std::size_t v = 0; v < inputs.size(); ++v) {
     system.project(6 * v, tied[v]);
   }
@@ -186,8 +187,9 @@ bool Adjustment::settle_weights() noexcept {
   constexpr double kSame = 0.1;
   const double before = sigma_mm * sigma_mm * ties_per_independent;
   const double markers_before = marker_variance_factor;
-  sigma_mm = std::max(kSmallestSigmaMm, surface.sigma_mm());
-  ties_per_independent = surface.ties_per_independent();
+  const TieResiduals residuals = surface.residuals();
+  sigma_mm = std::max(kSmallestSigmaMm, std::sqrt(residuals.variance_mm2()));
+  ties_per_independent = residuals.ties_per_independent();
   settle_marker_variance();
   const double now = sigma_mm * sigma_mm * ties_per_independent;
   return std::abs(now - before) < kSame * before &&
@@ -207,7 +209,8 @@ void Adjustment::adjust() noexcept {
     if (report.state == NetworkState::kSingular) {
       return;
     }
-    const double final_gate = std::max(config.final_gate_mm, 6.0 * surface.sigma_mm());
+    const double final_gate =
+        std::max(config.final_gate_mm, 6.0 * std::sqrt(surface.residuals().variance_mm2()));
     const bool at_last_gate = gate_mm <= config.final_gate_mm || gate_mm <= 1.01 * final_gate;
     // Where the surfaces leave a direction to the reports, ties that come and go keep the last step
     // above any fixed length: then it is enough that it is small beside its own sigma.

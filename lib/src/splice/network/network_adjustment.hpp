@@ -47,8 +47,10 @@ struct Adjustment {
   void adjust() noexcept;
   void settle_marker_variance() noexcept;
   bool settle_weights() noexcept;
-  void assemble(bool without_noise) noexcept;
-  void assemble_ties(bool without_noise) noexcept;
+  void assemble(bool without_noise,
+                const std::array<double, kFacings>& spread = kEvenSpread) noexcept;
+  void assemble_ties(bool without_noise,
+                     const std::array<double, kFacings>& spread = kEvenSpread) noexcept;
   double step() noexcept;
   void add_reports() noexcept;
   void leave_out(std::size_t v, ViewState why) noexcept;

@@ -96,17 +96,6 @@ void add_group_without_noise(Group& group, double weight, std::size_t bowl_at,
   add_group(group, -weight, bowl_at, system);
 }
 
-// Residuals of one pair of views along a row of references, the last three kept.
-struct Trail {
-  std::array<double, 3> last{};
-  std::array<bool, 3> known{};
-
-  void push(bool valid, double residual) noexcept {
-    last = {residual, last[0], last[1]};
-    known = {valid, known[0], known[1]};
-  }
-};
-
 class Walk {
  public:
   Walk(std::span<const PosedView> views, const Eigen::Vector3d& pivot,
@@ -120,19 +109,37 @@ class Walk {
         system_(system),
         statistics_(statistics) {}
 
+  // In tiles, one walked along rows and the next down columns: so residuals are known to hang
+  // together both ways.
   std::uint32_t over(std::size_t reference_view) noexcept {
     const PatchField& field = views_[reference_view].field;
-    for (std::uint32_t row = 0; row < field.rows; ++row) {
-      trails_ = {};
-      for (std::uint32_t column = 0; column < field.columns; ++column) {
-        const Eigen::Vector2d c = field.centre_px(column, row);
-        tie(reference_view, sight_at(views_[reference_view], c.x(), c.y(), bowl_mm_));
+    for (std::uint32_t row = 0; row < field.rows; row += kTile) {
+      for (std::uint32_t column = 0; column < field.columns; column += kTile) {
+        down_ = ((row + column) / kTile) % 2 == 1;
+        over_tile(reference_view, column, row);
       }
     }
     return ties_;
   }
 
  private:
+  static constexpr std::uint32_t kTile = 16;  // Patches: long beside what noise has in common.
+
+  void over_tile(std::size_t reference_view, std::uint32_t column, std::uint32_t row) noexcept {
+    const PatchField& field = views_[reference_view].field;
+    for (std::uint32_t line = 0; line < kTile; ++line) {
+      trails_ = {};
+      for (std::uint32_t step = 0; step < kTile; ++step) {
+        const std::uint32_t i = column + (down_ ? line : step);
+        const std::uint32_t j = row + (down_ ? step : line);
+        if (i < field.columns && j < field.rows) {
+          const Eigen::Vector2d c = field.centre_px(i, j);
+          tie(reference_view, sight_at(views_[reference_view], c.x(), c.y(), bowl_mm_));
+        }
+      }
+    }
+  }
+
   // A place that an earlier view sees has been tied from there: nothing is told twice.
   [[nodiscard]] bool is_told(std::size_t reference_view,
                              const SurfaceSight& reference) const noexcept {
@@ -149,6 +156,7 @@ class Walk {
 
   void tie(std::size_t reference_view, SurfaceSight reference) noexcept {
     reference.valid = reference.valid && !is_told(reference_view, reference);
+    const std::size_t facing = facing_of(reference.facing);
     Group group;
     if (reference.valid) {
       group.add(reference_view, reference, reference, pivot_, config_.gate_mm);
@@ -162,15 +170,17 @@ class Walk {
       const double height = reference.n_base.dot(sight.p_base - reference.p_base);
       const bool near = sight.valid && std::abs(height) < config_.gate_mm;
       note(reference_view, v, sight.valid, near, height);
+      trails_[v].push(height, near, down_, statistics_.by_facing[facing]);
       if (near) {
         group.add(v, sight, reference, pivot_, config_.gate_mm);
       }
     }
     if (group.count >= 2) {
+      const double weight = config_.weight * config_.spread[facing];
       if (config_.without_noise) {
-        add_group_without_noise(group, config_.weight, bowl_at_, system_);
+        add_group_without_noise(group, weight, bowl_at_, system_);
       } else {
-        add_group(group, config_.weight, bowl_at_, system_);
+        add_group(group, weight, bowl_at_, system_);
       }
       ties_ += static_cast<std::uint32_t>(group.count - 1);
     }
@@ -186,21 +196,12 @@ class Walk {
       ++statistics_.near[b];
       statistics_.squares[a] += height * height;
       statistics_.squares[b] += height * height;
-      statistics_.products[0] += height * height;
-      statistics_.pairs[0] += 1.0;
-      for (std::size_t lag = 0; lag < 3; ++lag) {
-        if (trails_[b].known[lag]) {
-          statistics_.products[lag + 1] += height * trails_[b].last[lag];
-          statistics_.pairs[lag + 1] += 1.0;
-        }
-      }
       ++links_[b];
       if (links_[b] >= kMinTiesOfALink) {
         statistics_.linked[a] = static_cast<cloud::ViewMask>(statistics_.linked[a] | (1U << b));
         statistics_.linked[b] = static_cast<cloud::ViewMask>(statistics_.linked[b] | (1U << a));
       }
     }
-    trails_[b].push(near, height);
   }
 
   std::span<const PosedView> views_;
@@ -210,9 +211,10 @@ class Walk {
   std::size_t bowl_at_;
   BlockSystem& system_;
   SurfaceStatistics& statistics_;
-  std::array<Trail, cloud::kMaxViews> trails_{};
+  std::array<ResidualTrail, cloud::kMaxViews> trails_{};
   std::array<std::uint32_t, cloud::kMaxViews> links_{};
   std::uint32_t ties_ = 0;
+  bool down_ = false;
 };
 
 }  // namespace
@@ -233,7 +235,7 @@ SurfaceSight sight_at(const PosedView& view, double u, double v,
   const Eigen::Vector3d ray = s.p_camera / s.p_camera.z();
   const Eigen::Vector3d p = s.p_camera - ray * bowl_mm.dot(shape);
   return {true, view.T_base_camera * p, view.T_base_camera.rotation * s.n_camera,
-          -s.n_camera.dot(ray) * shape};
+          -s.n_camera.dot(ray) * shape, -s.n_camera.dot(ray.normalized())};
 }
 
 SurfaceSight sight_of(const PosedView& view, const SurfaceSight& other,
@@ -249,23 +251,21 @@ SurfaceSight sight_of(const PosedView& view, const SurfaceSight& other,
   return sight;
 }
 
-double SurfaceStatistics::sigma_mm() const noexcept {
-  // A residual is the difference of two patches.
-  return pairs[0] > 0.0 ? std::sqrt(0.5 * products[0] / pairs[0]) : 0.0;
+TieResiduals SurfaceStatistics::residuals() const noexcept {
+  TieResiduals all;
+  for (const TieResiduals& facing : by_facing) {
+    all.add(facing);
+  }
+  return all;
 }
 
-// Shares are as often below zero as above where nothing hangs together: only their sum is bounded.
-double SurfaceStatistics::ties_per_independent() const noexcept {
-  if (!(products[0] > 0.0)) {
-    return 1.0;
+std::array<double, kFacings> SurfaceStatistics::spread() const noexcept {
+  const double of_all = residuals().long_run_mm2();
+  std::array<double, kFacings> spread = kEvenSpread;
+  for (std::size_t k = 0; k < kFacings && of_all > 0.0; ++k) {
+    spread[k] = by_facing[k].long_run_mm2() / of_all;
   }
-  const double variance = products[0] / pairs[0];
-  double along_a_row = 1.0;
-  for (std::size_t lag = 1; lag < pairs.size(); ++lag) {
-    along_a_row += pairs[lag] > 0.0 ? 2.0 * products[lag] / pairs[lag] / variance : 0.0;
-  }
-  along_a_row = std::max(1.0, along_a_row);
-  return along_a_row * along_a_row;
+  return spread;
 }
 
 std::uint32_t add_surface_ties(std::span<const PosedView> views, const Eigen::Vector3d& pivot,

@@ -10,6 +10,7 @@
 #include "dseam/geometry/rigid_transform.hpp"
 #include "dseam/splice/block_system.hpp"
 #include "dseam/splice/surface_patches.hpp"
+#include "dseam/splice/tie_residuals.hpp"
 
 namespace dseam::splice {
 
@@ -22,6 +23,7 @@ struct SurfaceSight {
   Eigen::Vector3d p_base = Eigen::Vector3d::Zero();
   Eigen::Vector3d n_base = Eigen::Vector3d::Zero();
   Eigen::Vector2d bowl_mm_per_mm = Eigen::Vector2d::Zero();  ///< How the bowl lifts p along n.
+  double facing = 0.0;  ///< Cosine between the normal and the ray back to the camera.
 };
 
 [[nodiscard]] SurfaceSight sight_at(const PosedView& view, double u, double v,
@@ -37,18 +39,22 @@ struct SurfaceStatistics {
   std::array<std::uint32_t, cloud::kMaxViews> wide{};  ///< and within the wide one.
   std::array<double, cloud::kMaxViews> squares{};      ///< Of the near ones, mm^2.
   std::array<cloud::ViewMask, cloud::kMaxViews> linked{};
-  std::array<double, 4> products{};  ///< Of residuals 0, 1, 2 and 3 references apart.
-  std::array<double, 4> pairs{};
+  std::array<TieResiduals, kFacings> by_facing{};  ///< By how the reference is seen.
 
-  [[nodiscard]] double sigma_mm() const noexcept;
-  [[nodiscard]] double ties_per_independent() const noexcept;
+  [[nodiscard]] TieResiduals residuals() const noexcept;  ///< Of all.
+  /// How far the errors of each facing's ties spread in sums of many, beside those of all: times
+  /// the variance.
+  [[nodiscard]] std::array<double, kFacings> spread() const noexcept;
 };
+
+constexpr std::array<double, kFacings> kEvenSpread{1.0, 1.0, 1.0, 1.0};
 
 struct SurfaceTieConfig {
   double gate_mm = 8.0;
   double wide_gate_mm = 8.0;
   double weight = 1.0;         ///< One over the variance of a patch, correlation included, 1/mm^2.
   bool without_noise = false;  ///< The information without what noise in normals adds to it.
+  std::array<double, kFacings> spread = kEvenSpread;  ///< Times the weight of each facing.
 };
 
 /// Adds all surface ties between used views to the system: unknowns 6 v .. 6 v + 5 of view v are
