@@ -34,6 +34,7 @@ CurveBuilder::Report CurveBuilder::run(const Config& config, const JointFit& fit
     return report;
   }
   report.length_mm = lengths_[kStations];
+  measure_unfollowed();
   const double count = std::max(16.0, std::round(report.length_mm / config.point_spacing_mm));
   if (!(count <= static_cast<double>(out.capacity()))) {
     report.full = true;
@@ -139,6 +140,15 @@ bool CurveBuilder::measure_length() noexcept {
   return true;
 }
 
+void CurveBuilder::measure_unfollowed() noexcept {
+  constexpr std::size_t kEvery = 16;
+  unfollowed_.reset(edges_.shell == nullptr ? 0 : edges_.shell->order());
+  for (std::size_t i = 0; i < kStations && edges_.shell != nullptr; i += kEvery) {
+    const double phi = angle_of(kTurnRad * static_cast<double>(i) / double{kStations});
+    unfollowed_.add(phi, fit_->nozzle_errors(stations_[i]));
+  }
+}
+
 SeamPoint CurveBuilder::point_at(double s_mm, const RingCoverage& coverage,
                                  const ErrorSources& errors) const noexcept {
   const auto after = std::upper_bound(lengths_.begin() + 1, lengths_.end() - 1, s_mm);
@@ -171,27 +181,29 @@ SeamPoint CurveBuilder::point_at(double s_mm, const RingCoverage& coverage,
   return point;
 }
 
-// A touching joint is displaced where its surfaces are; the shell's edge is displaced along the
-// shell by its own error, the nozzle's edge along the nozzle.
+// The curve is displaced where its two surfaces are, and by what both err alike. Of the shell's
+// edge the distance from the nozzle was measured, so that most of the nozzle's own error does not
+// count.
 void CurveBuilder::estimate_errors(SeamPoint& point, double phi_rad,
                                    const ErrorSources& errors) const noexcept {
-  const double common = errors.surface_sigma_mm * errors.surface_sigma_mm;
-  const double hand_eye = errors.hand_eye_sigma_mm * errors.hand_eye_sigma_mm;
+  const double common = errors.surface_sigma_mm * errors.surface_sigma_mm +
+                        errors.hand_eye_sigma_mm * errors.hand_eye_sigma_mm;
   const EdgeCurve* edge = edge_in_use();
-  const double height = edge != nullptr && edge == edges_.nozzle ? edge->variance_at(phi_rad) : 0.0;
-  const double shell = fit_->shell_variance(point.p_base) + common + height;
-  const double nozzle = fit_->nozzle_variance(point.p_base) + common;
+  const double of_edge = edge == nullptr ? 0.0 : edge->variance_at(phi_rad);
+  const bool aside = edge != nullptr && edge == edges_.shell;
+  const bool raised = edge != nullptr && edge == edges_.nozzle;
+  const double shell = fit_->shell_variance(point.p_base) + (raised ? of_edge : 0.0);
+  const double nozzle = aside ? unfollowed_.variance_at(phi_rad, fit_->nozzle_errors(point.p_base))
+                              : fit_->nozzle_variance(point.p_base);
   const double cosine = point.n_shell.dot(point.n_nozzle);
   const double sine_squared = std::max(1e-3, 1.0 - cosine * cosine);
-  const bool on_edge = edge != nullptr && edge == edges_.shell;
-  const double root = (nozzle + cosine * cosine * shell) / sine_squared;
   // A gap of unknown width is as likely to be anything up to its bound.
-  const bool by_surfaces = config_.reference == ReferenceCurve::kRoot || height > 0.0;
+  const bool by_surfaces = config_.reference == ReferenceCurve::kRoot || raised;
   const double hidden = by_surfaces ? 0.0 : errors.hidden_gap_mm;
-  const double lateral =
-      (on_edge ? edge->variance_at(phi_rad) + common : root) + hidden * hidden / 12.0;
-  point.sigma_lateral_mm = std::sqrt(lateral + hand_eye);
-  point.sigma_normal_mm = std::sqrt(shell + hand_eye);
+  const double lateral = (nozzle + cosine * cosine * shell) / sine_squared +
+                         (aside ? of_edge : 0.0) + hidden * hidden / 12.0;
+  point.sigma_lateral_mm = std::sqrt(lateral + common);
+  point.sigma_normal_mm = std::sqrt(shell + common);
 }
 
 }  // namespace dseam::seam

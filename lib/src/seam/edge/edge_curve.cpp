@@ -25,23 +25,6 @@ constexpr double kKinship =
     2.0;  // Lines of pixels next to each other err alike: so many count once.
 constexpr double kMaxStepMm = 1.0;
 
-EdgeCurve::Vector basis_at(double phi_rad) noexcept {
-  const double c1 = std::cos(phi_rad);
-  const double s1 = std::sin(phi_rad);
-  EdgeCurve::Vector b;
-  double c = 1.0;
-  double s = 0.0;
-  b[0] = 1.0;
-  for (std::size_t k = 1; k < b.size(); k += 2) {
-    const double next = c * c1 - s * s1;
-    s = s * c1 + c * s1;
-    c = next;
-    b[k] = c;
-    b[k + 1] = s;
-  }
-  return b;
-}
-
 std::size_t sector_of(double phi_rad) noexcept {
   const double turn = phi_rad / (2.0 * std::numbers::pi);
   const double place = (turn - std::floor(turn)) * double{kSectors};
@@ -81,6 +64,23 @@ Vote vote_of(const EdgeInterval& interval, double value, double blur_mm) noexcep
 }
 
 }  // namespace
+
+EdgeCurve::Vector EdgeCurve::basis_at(double phi_rad) noexcept {
+  const double c1 = std::cos(phi_rad);
+  const double s1 = std::sin(phi_rad);
+  Vector b;
+  double c = 1.0;
+  double s = 0.0;
+  b[0] = 1.0;
+  for (std::size_t k = 1; k < b.size(); k += 2) {
+    const double next = c * c1 - s * s1;
+    s = s * c1 + c * s1;
+    c = next;
+    b[k] = c;
+    b[k + 1] = s;
+  }
+  return b;
+}
 
 double EdgeCurve::value_at(const Vector& basis) const noexcept {
   double sum = 0.0;

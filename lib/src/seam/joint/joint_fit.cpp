@@ -255,4 +255,9 @@ double JointFit::nozzle_variance(const Eigen::Vector3d& p) const noexcept {
   return nozzle_.residual.variance_at(p, angle_about(joint_.nozzle, frame_, p), away);
 }
 
+ResidualModel::Row JointFit::nozzle_errors(const Eigen::Vector3d& p) const noexcept {
+  const double away = shell_distance(joint_, p) / band_mm_;
+  return nozzle_.residual.errors_at(p, angle_about(joint_.nozzle, frame_, p), away);
+}
+
 }  // namespace dseam::seam

@@ -234,20 +234,27 @@ double ResidualModel::at(const Eigen::Vector3d& p, double phi_rad, double away) 
   return dot(row, fitted_[0].solution);
 }
 
-double ResidualModel::variance_at(const Eigen::Vector3d& p, double phi_rad,
-                                  double away) const noexcept {
+ResidualModel::Row ResidualModel::errors_at(const Eigen::Vector3d& p, double phi_rad,
+                                            double away) const noexcept {
+  Row errors{};
   if (!fitted_[0].valid) {
-    return 0.0;
+    return errors;
   }
   Row row;
   row_at(p, phi_rad, away, row);
-  Row x{};
-  for (std::size_t i = 0; i < fitted_[0].columns.count; ++i) {
-    x[i] = row[fitted_[0].columns.index[i]];
+  const double sigma_mm = std::sqrt(fitted_[0].variance_mm2);
+  const std::size_t count = fitted_[0].columns.count;
+  for (std::size_t i = 0; i < count; ++i) {
+    errors[i] = sigma_mm * row[fitted_[0].columns.index[i]];
   }
-  const LentSymmetric factor(factor_, fitted_[0].columns.count);
-  factor.forward(std::span<double>(x).first(fitted_[0].columns.count));
-  return fitted_[0].variance_mm2 * dot(x, x);
+  LentSymmetric(factor_, count).forward(std::span<double>(errors).first(count));
+  return errors;
+}
+
+double ResidualModel::variance_at(const Eigen::Vector3d& p, double phi_rad,
+                                  double away) const noexcept {
+  const Row errors = errors_at(p, phi_rad, away);
+  return dot(errors, errors);
 }
 
 }  // namespace dseam::seam

@@ -8,6 +8,7 @@
 #include "dseam/base/buffer.hpp"
 #include "dseam/seam/curve/coverage.hpp"
 #include "dseam/seam/edge/edge_curve.hpp"
+#include "dseam/seam/edge/unfollowed_error.hpp"
 #include "dseam/seam/joint/joint_fit.hpp"
 #include "dseam/seam/seam_curve.hpp"
 
@@ -23,7 +24,7 @@ struct ErrorSources {
 /// Walks once round a joint and writes the reference curve as evenly spaced points.
 ///
 /// Frame:   that of the fit.
-/// Memory:  about 57 kB: for an arena, not for a stack.
+/// Memory:  about 61 kB: for an arena, not for a stack.
 /// Time:    O(points), a few evaluations of the fitted surfaces each.
 class CurveBuilder {
  public:
@@ -55,6 +56,7 @@ class CurveBuilder {
   [[nodiscard]] double offset_at(double phi_rad) const noexcept;
   [[nodiscard]] double height_at(double phi_rad) const noexcept;
   bool measure_length() noexcept;
+  void measure_unfollowed() noexcept;
   SeamPoint point_at(double s_mm, const RingCoverage& coverage,
                      const ErrorSources& errors) const noexcept;
   void estimate_errors(SeamPoint& point, double phi_rad, const ErrorSources& errors) const noexcept;
@@ -64,6 +66,7 @@ class CurveBuilder {
   JointEdges edges_;
   std::array<Eigen::Vector3d, kStations> stations_;
   std::array<double, kStations + 1> lengths_{};
+  UnfollowedError unfollowed_;
 };
 
 }  // namespace dseam::seam

@@ -42,6 +42,9 @@ class EdgeCurve {
   /// Whether an interval lies within about ten degrees.
   [[nodiscard]] bool held_at(double phi_rad) const noexcept;
   [[nodiscard]] std::size_t harmonics() const noexcept { return (order_ - 1) / 2; }
+  /// Of the periodic functions, how many are in use; they are 1, cos, sin, cos 2 phi, ...
+  [[nodiscard]] std::size_t order() const noexcept { return order_; }
+  [[nodiscard]] static Vector basis_at(double phi_rad) noexcept;
 
  private:
   using Storage = std::array<double, kMaxOrder * kMaxOrder>;

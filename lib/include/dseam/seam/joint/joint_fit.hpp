@@ -74,6 +74,8 @@ class JointFit {
   [[nodiscard]] double outside_nozzle(const Eigen::Vector3d& p) const noexcept;
   [[nodiscard]] double shell_variance(const Eigen::Vector3d& p) const noexcept;
   [[nodiscard]] double nozzle_variance(const Eigen::Vector3d& p) const noexcept;
+  /// The nozzle's error as a sum of independent ones, mm.
+  [[nodiscard]] ResidualModel::Row nozzle_errors(const Eigen::Vector3d& p) const noexcept;
 
  private:
   struct PatchSum {

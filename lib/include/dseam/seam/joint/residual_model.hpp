@@ -46,7 +46,9 @@ class ResidualModel {
   bool fit(std::span<const Patch> patches, const PatchGrid& grid) noexcept;
 
   [[nodiscard]] double at(const Eigen::Vector3d& p, double phi_rad, double away) const noexcept;
-  /// Variance of at(), from the scatter of the patches.
+  /// The error of at() as a sum of independent ones, mm, from the scatter of the patches.
+  [[nodiscard]] Row errors_at(const Eigen::Vector3d& p, double phi_rad, double away) const noexcept;
+  /// Their squares' sum.
   [[nodiscard]] double variance_at(const Eigen::Vector3d& p, double phi_rad,
                                    double away) const noexcept;
   /// The highest harmonic in use; -1: the model alone.
