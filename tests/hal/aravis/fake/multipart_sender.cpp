@@ -25,7 +25,7 @@ void put(std::vector<std::uint8_t>& packet, std::uint64_t value, unsigned bytes)
 }
 
 void put_part(std::vector<std::uint8_t>& packet, const SentPart& part) {
-  put(packet, part.type, 2);
+  put(packet, static_cast<std::uint64_t>(part.type), 2);
   put(packet, part.bytes.size(), 6);
   put(packet, part.pixel_format, 4);
   put(packet, 0, 2);  // Reserved,
