@@ -99,24 +99,26 @@ Result<SeamChain> SeamChain::make(const Config& config, const Capacity& capacity
 }
 
 seam::SeamReport SeamChain::run(const SeamInput& in, Buffer<seam::SeamPoint>& out) noexcept {
+  out.clear();
   seam::SeamReport report;
   attempt(in, Search::kSurfaces, report, out);
-  if (is_badly_seen(report) && !attempt(in, Search::kFeet, report, out)) {
-    attempt(in, Search::kSurfaces, report, out);
+  if (is_badly_seen(report)) {
+    seam::SeamReport at_feet;
+    report = attempt(in, Search::kFeet, at_feet, out) ? at_feet : report;
   }
   return report;
 }
 
-// True where there are two surfaces to fit, whatever becomes of the seam.
+// True where there are two surfaces to fit, whatever becomes of the seam; else `out` is left alone.
 bool SeamChain::attempt(const SeamInput& in, Search search, seam::SeamReport& report,
                         Buffer<seam::SeamPoint>& out) noexcept {
   report = {};
   report.reference = in.reference.value_or(config_.reference);
-  out.clear();
   seam::Joint joint;
   if (!find_joint(in, search, report, joint) || !fit_joint(in, joint, report)) {
     return false;
   }
+  out.clear();
   if (find_edges(in, report)) {
     build_curve(in, report, out);
   }
