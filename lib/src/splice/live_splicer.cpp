@@ -3,7 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "splice/network/surface_ties.hpp"
 
@@ -64,6 +66,48 @@ void LiveSplicer::tie(const PosedView& view, std::span<const PosedView> others,
 
 namespace {
 
+struct Seen {
+  double before = 0.0;
+  double near = 0.0;
+};
+
+// How far a point lies before what a view saw there and all round it, where it saw a surface; no
+// more than `most_mm` where it did not: at an edge nothing is sure.
+double height_before(const PosedView& view, const Eigen::Vector3d& p, double most_mm) noexcept {
+  constexpr double kAround = PatchField::kBlockPx;
+  constexpr std::array<std::array<double, 2>, 4> kCorners = {
+      {{-kAround, -kAround}, {kAround, -kAround}, {-kAround, kAround}, {kAround, kAround}}};
+  const depth::Intrinsics& k = view.field.intrinsics;
+  const double u = k.fx * p.x() / p.z() + k.cx;
+  const double v = k.fy * p.y() / p.z() + k.cy;
+  const SurfacePoint middle = surface_at(view.field, u, v);
+  double height = middle.n_camera.dot(p - middle.p_camera);
+  for (const auto& [du, dv] : kCorners) {
+    const SurfacePoint corner = surface_at(view.field, u + du, v + dv);
+    const double above = corner.n_camera.dot(p - corner.p_camera);
+    height = std::min(height, corner.valid ? above : most_mm);
+  }
+  return middle.valid ? height : -std::numeric_limits<double>::infinity();
+}
+
+// What a view measured hides nothing that another one saw: if it lies before that, one of the poses
+// is wrong. What lies behind is hidden, and says nothing.
+void look(const PosedView& from, const PosedView& at, double tolerance_mm, Seen& seen) noexcept {
+  const geometry::RigidTransform T_from_at = from.T_camera_base * at.T_base_camera;
+  for (std::uint32_t row = 0; row < at.field.rows; row += kReferenceStride) {
+    for (std::uint32_t column = 0; column < at.field.columns; column += kReferenceStride) {
+      const Eigen::Vector2d c = at.field.centre_px(column, row);
+      const SurfacePoint there = surface_at(at.field, c.x(), c.y());
+      const Eigen::Vector3d p = T_from_at * there.p_camera;
+      if (there.valid && p.z() > 1.0) {
+        const double height = height_before(from, p, tolerance_mm);
+        seen.before += height > tolerance_mm ? 1.0 : 0.0;
+        seen.near += std::abs(height) <= tolerance_mm ? 1.0 : 0.0;
+      }
+    }
+  }
+}
+
 // What the middle of the image shows.
 Eigen::Vector3d pivot_of(const PosedView& view) noexcept {
   constexpr double kUsualDistanceMm = 600.0;
@@ -74,6 +118,19 @@ Eigen::Vector3d pivot_of(const PosedView& view) noexcept {
 }
 
 }  // namespace
+
+double LiveSplicer::share_before(const PosedView& view,
+                                 std::span<const PosedView> others) const noexcept {
+  constexpr double kBeforeMm = 3.0;
+  Seen seen;
+  for (const PosedView& other : others) {
+    if (other.used) {
+      look(view, other, kBeforeMm, seen);
+      look(other, view, kBeforeMm, seen);
+    }
+  }
+  return seen.before / std::max(1.0, seen.before + seen.near);
+}
 
 LiveSplicer::Report LiveSplicer::run(const PosedView& start,
                                      std::span<const PosedView> others) const noexcept {
@@ -111,6 +168,7 @@ LiveSplicer::Report LiveSplicer::run(const PosedView& start,
     gate = std::max(0.5 * gate, config_.final_gate_mm);
   }
   report.T_base_camera = view.T_base_camera;
+  report.share_before = share_before(view, others);
   const bool holds = report.share_near >= config_.min_share_near;
   report.state = holds ? State::kSpliced : State::kContradicts;
   return report;

@@ -13,6 +13,8 @@
 #include "dseam/markers/marker_finder.hpp"
 #include "dseam/markers/marker_matcher.hpp"
 #include "dseam/splice/live_splicer.hpp"
+#include "dseam/splice/pipes/pipe_finder.hpp"
+#include "dseam/splice/pipes/pipe_placer.hpp"
 #include "dseam/splice/spliced_view.hpp"
 #include "dseam/splice/surface_patches.hpp"
 #include "dseam/splice/view_network.hpp"
@@ -22,7 +24,8 @@ namespace dseam::pipeline {
 /// From frames and reported poses to one pose for each view.
 ///
 /// A view is added as soon as it is seen: its markers and surface patches are kept, and it is
-/// spliced to those before it. finish() adjusts all of them together.
+/// spliced to those before it, by the pipes it shows where neither markers nor the reported pose
+/// bring it to them. finish() adjusts all of them together.
 ///
 /// Frame:   base; without any reported pose, the camera of the first view.
 /// Memory:  `bytes()` from the arena at make(); the frames themselves are not kept.
@@ -35,6 +38,8 @@ class SpliceChain {
     markers::MarkerMatcher::Config matcher;
     splice::PatchExtractor::Config patches;
     splice::LiveSplicer::Config live;
+    splice::PipeFinder::Config pipes;
+    splice::PipePlacer::Config placer;
     splice::ViewNetwork::Config network;
   };
   struct Capacity {
@@ -49,6 +54,8 @@ class SpliceChain {
     markers::MatchReport match;
     splice::PatchExtractor::Report patches;
     splice::LiveSplicer::Report live;
+    splice::PipePairState pair = splice::PipePairState::kNoPipe;  ///< Where it was sought.
+    splice::PipePlacer::Report pipes;
   };
 
   [[nodiscard]] static std::size_t bytes(const Capacity& capacity) noexcept;
@@ -83,14 +90,25 @@ class SpliceChain {
     std::span<splice::SurfacePatch> patches;
     Buffer<markers::Marker> markers;
     std::span<std::uint16_t> landmarks;  ///< Of each marker; kNoLandmark where it has none.
+    bool pair_sought = false;
+    splice::PipePlacer::State pipes = splice::PipePlacer::State::kNotSought;
   };
   static constexpr std::uint16_t kNoLandmark = 0xFFFF;
 
   SpliceChain(const Config& config, const Capacity& capacity) noexcept
-      : config_(config), capacity_(capacity), patches_(config.patches), live_(config.live) {}
+      : config_(config),
+        capacity_(capacity),
+        patches_(config.patches),
+        live_(config.live),
+        placer_(config.placer, config.live) {}
+  [[nodiscard]] Result<> build_stages(Arena& arena) noexcept;
+  void take_stores(Arena& arena) noexcept;
   [[nodiscard]] bool fits(const depth::DepthImage& frame) const noexcept;
   void extract(const depth::DepthImage& frame, ViewReport& report) noexcept;
   void place(std::size_t view, ViewReport& report) noexcept;
+  void seek_pipes(std::size_t view) noexcept;
+  [[nodiscard]] bool place_by_pipes(std::size_t view, ViewReport& report) noexcept;
+  void name_ambiguous(Buffer<splice::SplicedView>& out) const noexcept;
   void place_pending() noexcept;
   [[nodiscard]] std::size_t num_standing() const noexcept;
   void start_from(std::size_t first) noexcept;
@@ -105,12 +123,15 @@ class SpliceChain {
   Capacity capacity_;
   splice::PatchExtractor patches_;
   splice::LiveSplicer live_;
+  splice::PipePlacer placer_;
   std::optional<markers::MarkerFinder> finder_;
   std::optional<markers::MarkerMatcher> matcher_;
   std::optional<splice::ViewNetwork> network_;
+  std::optional<splice::PipeFinder> pipes_;
   std::span<ViewStore> stores_;
   std::span<splice::PosedView> posed_;
   std::span<splice::NetworkView> inputs_;
+  std::span<splice::PipePair> pairs_;
   std::size_t num_views_ = 0;
   Buffer<Eigen::Vector3d> landmarks_;  ///< Where each was first seen, base.
   Buffer<splice::MarkerSight> sights_;

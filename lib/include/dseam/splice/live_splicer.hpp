@@ -41,6 +41,8 @@ class LiveSplicer {
     geometry::RigidTransform T_base_camera;
     std::uint32_t num_ties = 0;
     double share_near = 0.0;
+    /// Of the places that another view sees as well: too far before what it saw there to be true.
+    double share_before = 0.0;
     double rms_mm = 0.0;
     std::uint32_t iterations = 0;
     Observability observability;
@@ -53,6 +55,8 @@ class LiveSplicer {
 
  private:
   struct Sums;
+  [[nodiscard]] double share_before(const PosedView& view,
+                                    std::span<const PosedView> others) const noexcept;
   void tie(const PosedView& view, std::span<const PosedView> others, const Eigen::Vector3d& pivot,
            double gate_mm, Sums& sums) const noexcept;
 

@@ -84,7 +84,7 @@ TEST(SpliceBadInput, of_two_views_that_disagree_neither_is_believed) {
 }
 
 TEST(SpliceBadInput, without_markers_and_reports_only_the_first_view_stands) {
-  const Spliced spliced = splice_all(std::span(bare_scan().frames).first(3), {});
+  const Spliced spliced = splice_all(bare_pipe().frames, {});
 
   EXPECT_EQ(num_in(spliced, ViewState::kNoOverlap), 2U);
   EXPECT_EQ(spliced.report.state, NetworkState::kOneView);
