@@ -15,10 +15,10 @@
 namespace dseam::test {
 namespace {
 
-constexpr SpliceRow kRows[] = {{"markers", 18, 0.0, false, 0.03, 0.06},
-                               {"round", 0, 0.0, false, 0.03, 0.10},
-                               {"oval", 0, 0.3, false, 0.10, 0.25},
-                               {"three", 3, 0.0, true, 0.0, 0.0}};
+constexpr SpliceRow kRows[] = {
+    {"markers", 18, 0.0, false, 0.03, 0.06}, {"round", 0, 0.0, false, 0.03, 0.10},
+    {"oval", 0, 0.3, false, 0.10, 0.25},     {"three", 3, 0.0, true, 0.0, 0.0},
+    {"pipes", 0, 0.0, true, 0.03, 0.10},     {"oval-pipes", 0, 0.3, true, 0.10, 0.25}};
 
 hal::sim::CellConfig cell_of(const SpliceRow& row, std::uint64_t seed) {
   hal::sim::CellConfig config;
@@ -32,7 +32,8 @@ hal::sim::CellConfig cell_of(const SpliceRow& row, std::uint64_t seed) {
   config.joint.shell_ovality_mm = row.ovality_mm;
   config.joint.nozzle_ovality_angle_rad = std::numbers::pi * random.uniform();
   config.markers.count = row.markers;
-  if (row.without_reports) {  // Side by side: three discs that say little of the far side.
+  if (row.without_reports && row.markers > 0) {
+    // Side by side: three discs that say little of the far side.
     config.markers.spacing_mm = 10.0;
     config.markers.nearest_mm = 12.0;
     config.markers.farthest_mm = 30.0;

@@ -16,7 +16,7 @@ struct SpliceRow {
   const char* name;
   std::uint32_t markers;
   double ovality_mm;
-  bool without_reports;  ///< Markers alone must place the views.
+  bool without_reports;  ///< Markers or pipes alone must place the views.
   double median_mm;      ///< Of the splice error at the seam, over the seeds; 0: not asked.
   double p95_mm;         ///< Asked of 200 seeds and more.
 };

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "splice/pipes/pipe_form.hpp"
 
@@ -108,18 +109,19 @@ bool PipeFinder::trial(Pcg32& random, Cylinder& out) const noexcept {
   Eigen::Vector3d between = points_.first(n)[i] - points_.first(n)[k];
   const double along = out.axis.dot(between);
   between -= out.axis * along;
-  out.radius_mm = between.dot(a - b) / (a - b).squaredNorm();
-  out.point_mm = points_.first(n)[i] - out.radius_mm * a;
+  const double radius_mm = between.dot(a - b) / (a - b).squaredNorm();
+  out.radius_mm = facing_ * radius_mm;
+  out.point_mm = points_.first(n)[i] - radius_mm * a;
   const double tolerance = config_.tolerance_mm + kAxisError * std::abs(along);
   return out.radius_mm > config_.min_radius_mm && out.radius_mm < config_.max_radius_mm &&
-         (between - out.radius_mm * (a - b)).norm() < tolerance;
+         (between - radius_mm * (a - b)).norm() < tolerance;
 }
 
 bool PipeFinder::lies_on(const Cylinder& c, std::size_t i, double tolerance_mm,
                          double cosine) const noexcept {
   const Eigen::Vector3d p = points_.first(num_samples_)[i];
   return std::abs(c.distance_mm(p)) < tolerance_mm &&
-         c.normal(p).dot(normals_.first(num_samples_)[i]) > cosine;
+         facing_ * c.normal(p).dot(normals_.first(num_samples_)[i]) > cosine;
 }
 
 std::uint32_t PipeFinder::votes(const Cylinder& c, std::size_t stride) const noexcept {
@@ -216,43 +218,71 @@ PipePairState PipeFinder::judge(const Pipe& pipe) const noexcept {
   return known ? PipePairState::kFound : PipePairState::kTooNarrow;
 }
 
-PipePairState PipeFinder::judge(const PipePair& pair) const noexcept {
-  const Cylinder& shell = pair.shell.fit.cylinder;
-  const Cylinder& nozzle = pair.nozzle.fit.cylinder;
-  if (shell.axis.cross(nozzle.axis).norm() < config_.min_axis_sine) {
+// Says of the other pipe whether it makes a pair with the shell.
+PipePairState PipeFinder::judge(const Pipe& shell, Pipe& other) const noexcept {
+  const Cylinder& a = shell.fit.cylinder;
+  const Cylinder& b = other.fit.cylinder;
+  if (a.axis.cross(b.axis).norm() < config_.min_axis_sine) {
     return PipePairState::kParallel;
   }
-  for (const Pipe* pipe : {&pair.shell, &pair.nozzle}) {
+  for (const Pipe* pipe : {&shell, &std::as_const(other)}) {
     if (const PipePairState state = judge(*pipe); state != PipePairState::kFound) {
       return state;
     }
   }
-  return shell.radius_mm - nozzle.radius_mm < config_.min_lead_mm ? PipePairState::kAlike
-                                                                  : PipePairState::kFound;
+  other.usable = a.radius_mm - b.radius_mm > config_.min_lead_mm;
+  return other.usable ? PipePairState::kFound : PipePairState::kAlike;
 }
 
-PipePair PipeFinder::run(const PatchField& field) noexcept {
-  PipePair pair;
-  sample(field);
-  if (!next_pipe(field.intrinsics, pair.shell)) {
-    return pair;
+// The shell, and the nozzle where its outside is seen.
+PipePairState PipeFinder::seek_outsides(const depth::Intrinsics& k, PipePair& pair) noexcept {
+  facing_ = 1.0;
+  if (!next_pipe(k, pair.shell)) {
+    return PipePairState::kNoPipe;
   }
-  pair.state = PipePairState::kOnePipe;
   pair.nozzle.patches_per_independent = pair.shell.patches_per_independent;
-  if (!next_pipe(field.intrinsics, pair.nozzle)) {
-    return pair;
+  if (!next_pipe(k, pair.nozzle)) {
+    return PipePairState::kOnePipe;
   }
   const double least = std::min(pair.shell.fit.num_inliers, pair.nozzle.fit.num_inliers);
   Pipe third;
-  if (next_pipe(field.intrinsics, third) && third.fit.num_inliers > config_.rival_share * least) {
-    pair.state = PipePairState::kMorePipes;
-    return pair;
+  if (next_pipe(k, third) && third.fit.num_inliers > config_.rival_share * least) {
+    return PipePairState::kMorePipes;
   }
   if (pair.shell.fit.cylinder.radius_mm < pair.nozzle.fit.cylinder.radius_mm) {
     std::swap(pair.shell, pair.nozzle);
   }
   turn_outwards(pair.shell.fit.cylinder, pair.nozzle);
-  pair.state = judge(pair);
+  return judge(pair.shell, pair.nozzle);
+}
+
+// The nozzle's inside; that of the shell may be seen through it.
+PipePairState PipeFinder::seek_bore(const depth::Intrinsics& k, PipePair& pair) noexcept {
+  constexpr int kMaxInsides = 3;
+  facing_ = -1.0;
+  PipePairState state = PipePairState::kOnePipe;
+  for (int i = 0; i < kMaxInsides && state != PipePairState::kFound; ++i) {
+    pair.bore = {};
+    pair.bore.patches_per_independent = pair.shell.patches_per_independent;
+    if (!next_pipe(k, pair.bore)) {
+      return state;
+    }
+    turn_outwards(pair.shell.fit.cylinder, pair.bore);
+    state = judge(pair.shell, pair.bore);
+  }
+  return state;
+}
+
+PipePair PipeFinder::run(const PatchField& field) noexcept {
+  PipePair pair;
+  sample(field);
+  pair.state = seek_outsides(field.intrinsics, pair);
+  const bool nozzle_missing =
+      pair.state == PipePairState::kOnePipe || pair.state == PipePairState::kTooNarrow;
+  if (nozzle_missing || pair.nozzle.usable) {
+    const PipePairState bore = seek_bore(field.intrinsics, pair);
+    pair.state = bore == PipePairState::kFound ? bore : pair.state;
+  }
   return pair;
 }
 

@@ -27,9 +27,15 @@ using Depths10 = Eigen::Matrix<double, 10, 3>;
 constexpr double kFormMm = 0.1;
 constexpr double kFormRad = 1e-3;
 
+// Shell and what is seen of the nozzle.
+struct Axes {
+  const Pipe& shell;
+  const Pipe& nozzle;
+};
+
 // x along the shell's axis in the sense given, z near the nozzle's, in the foot of the axes' common
 // perpendicular on the nozzle's.
-RigidTransform frame_of(const PipePair& pair, double sense) noexcept {
+RigidTransform frame_of(const Axes& pair, double sense) noexcept {
   const Cylinder& shell = pair.shell.fit.cylinder;
   const Cylinder& nozzle = pair.nozzle.fit.cylinder;
   RigidTransform frame;
@@ -85,7 +91,7 @@ struct System {
   Matrix10 covariance = Matrix10::Zero();
 };
 
-[[gnu::noinline]] System compare(const PipePair& a, const PipePair& b, const RigidTransform& T_a_b,
+[[gnu::noinline]] System compare(const Axes& a, const Axes& b, const RigidTransform& T_a_b,
                                  double depth_sigma_mm) noexcept {
   System out;
   Depths10 depths;
@@ -125,7 +131,7 @@ Vector10 form_variance() noexcept {
 }
 
 // One step of Gauss-Newton.
-[[gnu::noinline]] void step(const PipePair& a, const PipePair& b, double depth_sigma_mm,
+[[gnu::noinline]] void step(const Axes& a, const Axes& b, double depth_sigma_mm,
                             PipePlace& place) noexcept {
   const System s = compare(a, b, place.T_a_b, depth_sigma_mm);
   const Rows10 rows = weighted(s);
@@ -135,7 +141,7 @@ Vector10 form_variance() noexcept {
   place.T_a_b = geometry::perturbed(place.T_a_b, -(place.covariance * gradient));
 }
 
-[[gnu::noinline]] double chi_squared(const PipePair& a, const PipePair& b, double depth_sigma_mm,
+[[gnu::noinline]] double chi_squared(const Axes& a, const Axes& b, double depth_sigma_mm,
                                      const RigidTransform& T_a_b) noexcept {
   System s = compare(a, b, T_a_b, depth_sigma_mm);
   s.covariance.diagonal() += form_variance();
@@ -143,7 +149,7 @@ Vector10 form_variance() noexcept {
   return s.residual.dot(factor.solve(s.residual));
 }
 
-PipePlace settle(const PipePair& a, const PipePair& b, const RigidTransform& start,
+PipePlace settle(const Axes& a, const Axes& b, const RigidTransform& start,
                  double depth_sigma_mm) noexcept {
   constexpr int kIterations = 6;
   PipePlace place;
@@ -159,9 +165,15 @@ PipePlace settle(const PipePair& a, const PipePair& b, const RigidTransform& sta
 
 PipePlaces match_pipes(const PipePair& a, const PipePair& b, double depth_sigma_mm) noexcept {
   PipePlaces out;
-  const RigidTransform T_a_frame = frame_of(a, 1.0);
-  out.places[0] = settle(a, b, T_a_frame * frame_of(b, 1.0).inverse(), depth_sigma_mm);
-  out.places[1] = settle(a, b, T_a_frame * frame_of(b, -1.0).inverse(), depth_sigma_mm);
+  const bool by_outside = a.nozzle.usable && b.nozzle.usable;
+  if (!by_outside && !(a.bore.usable && b.bore.usable)) {
+    return out;
+  }
+  const Axes of_a{a.shell, by_outside ? a.nozzle : a.bore};
+  const Axes of_b{b.shell, by_outside ? b.nozzle : b.bore};
+  const RigidTransform T_a_frame = frame_of(of_a, 1.0);
+  out.places[0] = settle(of_a, of_b, T_a_frame * frame_of(of_b, 1.0).inverse(), depth_sigma_mm);
+  out.places[1] = settle(of_a, of_b, T_a_frame * frame_of(of_b, -1.0).inverse(), depth_sigma_mm);
   return out;
 }
 

@@ -79,7 +79,7 @@ void weigh_report(const ReportedPose& reported, const PipePlacer::Config& config
 PipePlacer::Candidate PipePlacer::candidate(const PosedView& view, const PosedView& partner,
                                             const PipePlace& place, const ReportedPose& reported,
                                             std::span<const PosedView> others,
-                                            const Eigen::Vector3d& joint_camera) const noexcept {
+                                            const Eigen::Vector3d& shell_camera) const noexcept {
   Candidate out;
   out.T_base_camera = partner.T_base_camera * place.T_a_b;
   out.report.covariance = in_base(place.covariance, partner.T_base_camera);
@@ -90,7 +90,7 @@ PipePlacer::Candidate PipePlacer::candidate(const PosedView& view, const PosedVi
   out.report.live = live_.run(placed, others);
   const LiveSplicer::Report& live = out.report.live;
   const double pull_mm =
-      (live.T_base_camera * joint_camera - out.T_base_camera * joint_camera).norm();
+      (live.T_base_camera * shell_camera - out.T_base_camera * shell_camera).norm();
   out.possible = live.state != LiveSplicer::State::kContradicts &&
                  live.share_before < config_.sure_share_before;
   out.holds = live.state == LiveSplicer::State::kSpliced && !contradicted(live) &&

@@ -19,7 +19,7 @@ namespace dseam::splice {
 /// Finds shell and nozzle among one view's surface patches.
 ///
 /// Two patches whose normals differ make a cylinder; the one on which most patches lie is fitted to
-/// them, they are put aside, and the next is sought. What is seen from inside is no pipe.
+/// them, they are put aside, and the next is sought. Insides are sought after all outsides.
 ///
 /// Frame:   camera.
 /// Memory:  `bytes()` from the arena; nothing is kept between two calls.
@@ -76,7 +76,9 @@ class PipeFinder {
                              double cosine) const noexcept;
   std::size_t collect(const geometry::Cylinder& c, double tolerance_mm, double cosine) noexcept;
   void put_aside(const geometry::Cylinder& c) noexcept;
-  [[nodiscard]] PipePairState judge(const PipePair& pair) const noexcept;
+  [[nodiscard]] PipePairState seek_outsides(const depth::Intrinsics& k, PipePair& pair) noexcept;
+  PipePairState seek_bore(const depth::Intrinsics& k, PipePair& pair) noexcept;
+  [[nodiscard]] PipePairState judge(const Pipe& shell, Pipe& other) const noexcept;
   [[nodiscard]] PipePairState judge(const Pipe& pipe) const noexcept;
 
   Config config_;
@@ -85,6 +87,7 @@ class PipeFinder {
   Coordinates chosen_;  ///< Points of the pipe that is being fitted, in their order.
   std::span<bool> aside_;
   std::size_t num_samples_ = 0;
+  double facing_ = 1.0;  ///< 1: outsides are sought, -1: insides.
 };
 
 }  // namespace dseam::splice

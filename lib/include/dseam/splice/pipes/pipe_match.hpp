@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "dseam/geometry/rigid_transform.hpp"
 #include "dseam/splice/pipes/pipe_pair.hpp"
@@ -16,7 +17,7 @@ struct PipePlace {
   geometry::RigidTransform T_a_b;
   geometry::Matrix6 covariance = geometry::Matrix6::Zero();
   /// Of what a pose cannot change: the two radii, the angle and the distance of the axes.
-  double chi_squared = 0.0;
+  double chi_squared = std::numeric_limits<double>::infinity();
 };
 
 /// Both senses in which the shell's axis may run. A part that is symmetric about its nozzle's axis
@@ -31,7 +32,8 @@ struct PipePlaces {
   }
 };
 
-/// Weighted least squares over both pairs' ten parameters, from a closed form.
+/// Weighted least squares over both pairs' ten parameters, from a closed form: shell and nozzle, or
+/// shell and bore where one of the views does not see the nozzle's outside.
 ///
 /// Units:   `depth_sigma_mm` is the standard deviation of a depth bowl and offset that all views of
 ///          one scanner have in common.

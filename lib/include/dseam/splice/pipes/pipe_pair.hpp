@@ -11,12 +11,13 @@ namespace dseam::splice {
 /// bowl along the image's x, one along y (at the image's sides), and an offset.
 using DepthEffect = Eigen::Matrix<double, 5, 3>;
 
-/// One pipe's outside as one view sees it.
+/// One pipe's outside, or its inside, as one view sees it.
 ///
 /// Frame:   camera.
 /// Shape:   the fit's covariance allows for residuals that hang together and for a section that may
 ///          be oval; it does not hold the effect of the depths.
 struct Pipe {
+  bool usable = false;  ///< Known well enough to be one of a pair.
   geometry::CylinderFit fit;
   DepthEffect depth_effect = DepthEffect::Zero();
   double ovality_mm = 0.0;        ///< Of the half-axes about the radius; 0: not told from round.
@@ -38,11 +39,13 @@ enum class PipePairState : std::uint8_t {
 /// Shell and nozzle in one view: two axes that are not parallel, which leave no motion free.
 ///
 /// Frame:   camera.
-/// Shape:   the nozzle's axis points away from the shell; the sense of the shell's means nothing.
+/// Shape:   axes of nozzle and bore point away from the shell; the sense of the shell's means
+///          nothing. Found is a pair of which the nozzle's outside or its bore can be used.
 struct PipePair {
   PipePairState state = PipePairState::kNoPipe;
   Pipe shell;
   Pipe nozzle;
+  Pipe bore;  ///< The nozzle's inside: all that a view along the nozzle sees of it.
 };
 
 }  // namespace dseam::splice

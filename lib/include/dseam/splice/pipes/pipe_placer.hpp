@@ -23,7 +23,7 @@ class PipePlacer {
     double depth_sigma_mm = 0.01;     ///< Of a depth bowl and offset that all views share.
     double max_share_before = 0.002;  ///< Of a view before what others saw; more does not hold,
     double sure_share_before = 0.05;  ///< and this much rules a place out.
-    double max_pull_mm = 5.0;  ///< How far surfaces may move the joint from its pipes' place.
+    double max_pull_mm = 5.0;  ///< How far surfaces may move the shell from its pipes' place.
     double reported_sigma_mm = 1.0;
     double reported_sigma_rad = 0.0052359877559829881;
     double report_gate_mm = 100.0;  ///< A report nearer than this tells two places apart,
@@ -62,7 +62,7 @@ class PipePlacer {
   [[nodiscard]] Candidate candidate(const PosedView& view, const PosedView& partner,
                                     const PipePlace& place, const ReportedPose& reported,
                                     std::span<const PosedView> others,
-                                    const Eigen::Vector3d& joint_camera) const noexcept;
+                                    const Eigen::Vector3d& shell_camera) const noexcept;
   [[nodiscard]] Report by_partner(const PosedView& view, const PipePair& pair,
                                   const ReportedPose& reported, std::span<const PosedView> others,
                                   std::size_t partner, const PipePair& partners) const noexcept;
