@@ -230,20 +230,25 @@ bool sort_over_grid(std::span<CurvePlace> places, std::span<CurvePlace> spare,
   return true;
 }
 
-bool sort_over_own_grid(const cloud::CloudView& cloud, std::span<CurvePlace> places,
-                        std::span<CurvePlace> spare, std::span<std::uint32_t> counters) noexcept {
-  const auto from_cloud = [&](std::size_t i) noexcept {
-    return eight_at(cloud, places.subspan(i));
-  };
-  if (places.size() > kFew) {
-    return sort_over_grid(places, spare, counters, from_cloud);
-  }
+// Not inlined: beside each other the two frames of sort_by_rank would be too large for one stack.
+[[gnu::noinline]] bool sort_few(const cloud::CloudView& cloud, std::span<CurvePlace> places,
+                                std::span<CurvePlace> spare,
+                                std::span<std::uint32_t> counters) noexcept {
   std::array<EightPoints, kFew / kLanes> picked{};  // Once for the grid and the keys.
   for (std::size_t i = 0; i < places.size(); i += kLanes) {
-    picked[i / kLanes] = from_cloud(i);
+    picked[i / kLanes] = eight_at(cloud, places.subspan(i));
   }
   return sort_over_grid(places, spare, counters,
                         [&](std::size_t i) noexcept { return picked[i / kLanes]; });
+}
+
+bool sort_over_own_grid(const cloud::CloudView& cloud, std::span<CurvePlace> places,
+                        std::span<CurvePlace> spare, std::span<std::uint32_t> counters) noexcept {
+  if (places.size() <= kFew) {
+    return sort_few(cloud, places, spare, counters);
+  }
+  return sort_over_grid(places, spare, counters,
+                        [&](std::size_t i) noexcept { return eight_at(cloud, places.subspan(i)); });
 }
 
 // How many places the first key has, when they are more than `few`; else 1.
