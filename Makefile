@@ -78,6 +78,7 @@ cross:
 	ctest --preset aarch64-linux-release -LE 'long|vm' -j $(JOBS)
 	cmake --preset cortex-m7-none-release
 	cmake --build --preset cortex-m7-none-release -j $(JOBS)
+	ctest --preset cortex-m7-none-release
 
 # Times beside PCL in the same run, in a folder of its own: `make test` must not need PCL afterwards.
 # All of them are run, whichever misses what is asked.

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 /// Eight numbers that go through the same arithmetic at once.
 ///
@@ -79,20 +80,34 @@ DSEAM_LANES_OPERATOR(IntLanes, IntLanes, <)
 DSEAM_LANES_OPERATOR(IntLanes, IntLanes, ==)
 #undef DSEAM_LANES_OPERATOR
 
-/// The same part anywhere in memory. By memcpy, some compilers would go through the stack.
+#if defined(__SSE2__) || defined(__ARM_NEON)
+#define DSEAM_LANES_IN_REGISTERS
+#endif
+/// The same part anywhere in memory. By memcpy, some compilers would go through the stack; where no
+/// register holds a part, though, GCC takes it apart and forgets that it may alias.
 template <typename Part>
 struct InMemory {
   typedef Part Anywhere __attribute__((aligned(4), may_alias));
 };
 template <typename T, typename E>
 [[gnu::always_inline, nodiscard]] inline T load_lanes(const E* from) noexcept {
-  using Part = decltype(T::low);
   static_assert(sizeof(T) == kLanes * sizeof *from);
+#if defined(DSEAM_LANES_IN_REGISTERS)
+  using Part = decltype(T::low);
   const auto* parts = reinterpret_cast<const typename InMemory<Part>::Anywhere*>(from);
 #if defined(__AVX__)
   return {*parts};
 #else
   return {parts[0], parts[1]};
+#endif
+#else
+  using Number = std::remove_reference_t<decltype(T{}[0])>;
+  T lanes;
+  for (std::size_t i = 0; i < kPartLanes; ++i) {
+    lanes.low[i] = static_cast<Number>(from[i]);
+    lanes.high[i] = static_cast<Number>(from[kPartLanes + i]);
+  }
+  return lanes;
 #endif
 }
 [[gnu::always_inline, nodiscard]] inline FloatLanes load(const float* from) noexcept {
@@ -104,10 +119,16 @@ template <typename T, typename E>
 template <typename Part, typename E>
 [[gnu::always_inline]] inline void store(const Lanes<Part>& lanes, E* to) noexcept {
   static_assert(sizeof lanes == kLanes * sizeof *to);
+#if defined(DSEAM_LANES_IN_REGISTERS)
   auto* parts = reinterpret_cast<typename InMemory<Part>::Anywhere*>(to);
   parts[0] = lanes.low;
 #if !defined(__AVX__)
   parts[1] = lanes.high;
+#endif
+#else
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    to[i] = static_cast<E>(lanes[i]);
+  }
 #endif
 }
 [[gnu::always_inline, nodiscard]] inline FloatLanes splat(float value) noexcept {
