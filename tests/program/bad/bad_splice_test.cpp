@@ -54,7 +54,8 @@ TEST(BadSplice, neither_poses_nor_markers_is_refused) {
   const Spliced spliced = splice(0, without_pose);
 
   EXPECT_EQ(spliced.exit_code, 4);
-  EXPECT_EQ(spliced.states, (States{"used", "no overlap", "no overlap"}));
+  EXPECT_EQ(spliced.states,
+            (States{"used", "ambiguous", "ambiguous"}));  // Two places by its pipes.
 }
 
 TEST(BadSplice, the_same_frame_twice_is_named) {

@@ -130,10 +130,11 @@ bool SpliceChain::place_by_pipes(std::size_t index, ViewReport& report) noexcept
   return true;
 }
 
-// Nobody has seen a view in its place that its pipes put in several.
+// Nobody has seen a view in its place that its pipes put in several. Where it was reported apart
+// from all others, that is what is said of it.
 void SpliceChain::name_ambiguous(Buffer<splice::SplicedView>& out) const noexcept {
   for (std::size_t v = 0; v < out.size(); ++v) {
-    if (out[v].state == splice::ViewState::kNoOverlap &&
+    if (out[v].state == splice::ViewState::kNoOverlap && !stores_[v].reported.known &&
         stores_[v].pipes == PipePlacer::State::kAmbiguous) {
       out[v].state = splice::ViewState::kAmbiguous;
     }
