@@ -13,12 +13,13 @@ namespace {
 
 using geometry::Cylinder;
 
-constexpr std::size_t kVoters = 512;  // Samples that a trial is judged by.
-constexpr double kMinTurn = 0.25;     // Between two normals that make a cylinder, rad,
-constexpr double kMaxTurn = 1.2;      // and at most.
-constexpr double kAxisError = 0.02;   // Of an axis from two normals.
-constexpr double kLoose = 2.0;        // Before a cylinder is fitted, against afterwards.
-constexpr int kMaxAttempts = 6;       // Cylinders that do not hold when they are fitted.
+constexpr std::uint32_t kFewestPatches = 10;  // That make a pipe: it has seven unknowns.
+constexpr std::size_t kVoters = 512;          // Samples that a trial is judged by.
+constexpr double kMinTurn = 0.25;             // Between two normals that make a cylinder, rad,
+constexpr double kMaxTurn = 1.2;              // and at most.
+constexpr double kAxisError = 0.02;           // Of an axis from two normals.
+constexpr double kLoose = 2.0;                // Before a cylinder is fitted, against afterwards.
+constexpr int kMaxAttempts = 6;               // Cylinders that do not hold when they are fitted.
 
 // Every how manieth row and column: as far apart along the rows as across.
 std::uint32_t stride_for(const PatchField& field) noexcept {
@@ -57,7 +58,8 @@ void PipeFinder::Coordinates::set(std::size_t i, const Eigen::Vector3d& v) noexc
 
 Result<PipeFinder> PipeFinder::make(const Config& config, Arena& arena) noexcept {
   if (!(config.tolerance_mm > 0.0) || !(config.min_radius_mm > 0.0) ||
-      !(config.max_radius_mm > config.min_radius_mm)) {
+      !(config.max_radius_mm > config.min_radius_mm) || !(config.ovality_sigma_mm > 0.0) ||
+      config.min_patches < kFewestPatches) {
     return Errc::kInvalidArgument;
   }
   PipeFinder finder(config);

@@ -21,7 +21,6 @@ using Depths7 = Eigen::Matrix<double, 7, 3>;
 
 constexpr double kGateInRms = 6.0;
 constexpr double kSmallestGateMm = 0.02;
-// Beforehand: next to nothing is known.
 constexpr double kOvalChiSquaredLimit = 18.4;  // One round pipe in 10,000 is called oval.
 
 struct Sums {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pipe_scene.hpp"
+#include "support/arena_owner.hpp"
 
 namespace dseam::splice {
 namespace {
@@ -76,6 +77,17 @@ TEST(PipeFinder, of_two_nozzles_nobody_can_say_which_is_meant) {
       {{shell_of(108.0), nozzle_of(35.0, 1.57, 0.0, -60.0), nozzle_of(35.0, 1.57, 0.0, 60.0)}});
 
   EXPECT_EQ(pair.state, PipePairState::kMorePipes);
+}
+
+TEST(PipeFinder, a_configuration_without_sense_is_refused) {
+  test::ArenaOwner owner(PipeFinder::bytes());
+  PipeFinder::Config few;
+  few.min_patches = 3;
+  PipeFinder::Config sure;
+  sure.ovality_sigma_mm = 0.0;
+
+  EXPECT_EQ(PipeFinder::make(few, owner.arena()).error(), Errc::kInvalidArgument);
+  EXPECT_EQ(PipeFinder::make(sure, owner.arena()).error(), Errc::kInvalidArgument);
 }
 
 TEST(PipeFinder, the_same_view_gives_the_same_bits) {
