@@ -202,7 +202,7 @@ NetworkReport SpliceChain::finish(Buffer<splice::SplicedView>& out) noexcept {
   place_pending();
   choose_first();
   collect_sights();
-  const NetworkReport report = network_->run(inputs_.first(num_views_), sights_.view(), out);
+  NetworkReport report = network_->run(inputs_.first(num_views_), sights_.view(), out);
   name_ambiguous(out);
   return report;
 }
