@@ -159,8 +159,9 @@ LiveSplicer::Report LiveSplicer::run(const PosedView& start,
     }
     const geometry::Vector6 step = report.observability.solve(sums.h, sums.g);
     const Eigen::Matrix3d turn = geometry::rotation_exp(step.tail<3>());
-    const geometry::RigidTransform& T = view.T_base_camera;
-    view.place({turn * T.rotation, turn * (T.translation_mm - pivot) + pivot + step.head<3>()});
+    const geometry::RigidTransform& T_base_camera = view.T_base_camera;
+    view.place({turn * T_base_camera.rotation,
+                turn * (T_base_camera.translation_mm - pivot) + pivot + step.head<3>()});
     const bool last_gate = gate <= std::max(config_.final_gate_mm, 5.0 * report.rms_mm);
     if (last_gate && step.norm() < 1e-3) {
       break;
