@@ -19,10 +19,12 @@ int main() {
   std::vector<float> x;
   std::vector<float> y;
   std::vector<float> z;
-  for (int i = 0; i < 10000; ++i) {  // A plate of 99 x 99 mm, a point every millimetre.
-    x.push_back(static_cast<float>(i % 100));
-    y.push_back(static_cast<float>(i / 100));
-    z.push_back(0.0F);
+  for (int row = 0; row < 100; ++row) {  // A plate of 99 x 99 mm, a point every millimetre.
+    for (int column = 0; column < 100; ++column) {
+      x.push_back(static_cast<float>(column));
+      y.push_back(static_cast<float>(row));
+      z.push_back(0.0F);
+    }
   }
   dseam::Arena arena(memory);
   auto stage = VoxelDownsample::make({.cell_mm = 10.0F}, kMaxCells, arena);
