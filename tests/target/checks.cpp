@@ -18,8 +18,7 @@ alignas(32) std::array<std::byte, 4096> lent_memory;
 constexpr std::size_t kMaxCells = 200;
 using Workspace = dseam::pipeline::ScanWorkspace<dseam::cloud::VoxelDownsample::bytes(kMaxCells) +
                                                  dseam::cloud::CloudBuffer::bytes(kMaxCells)>;
-// Of that 25 kB are the points in flight, whatever the number of cells (voxel_map.hpp).
-static_assert(sizeof(Workspace) <= 48U << 10U, "a tenth of a Cortex-M7's 512 kB of data memory");
+static_assert(sizeof(Workspace) <= 24U << 10U, "a tenth of a Cortex-M7's data memory");
 Workspace workspace;
 
 bool the_arena_lends_and_refuses() {

@@ -17,7 +17,13 @@ namespace dseam::cloud {
 /// Memory:  25 kB, lent.
 class CellRuns {
  public:
+  // Many, so that slots far apart in memory can be asked for ahead; a microcontroller has no cache
+  // to ask for, and little memory.
+#if defined(DSEAM_LANES_IN_REGISTERS)
   static constexpr std::size_t kCapacity = 512;
+#else
+  static constexpr std::size_t kCapacity = 64;
+#endif
 
   /// One axis of eight points: which cell, and how far into it in steps of 2^-20 cells.
   struct Axis {

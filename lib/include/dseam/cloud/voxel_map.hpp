@@ -21,7 +21,7 @@ namespace dseam::cloud {
 /// and a million of them lose nothing.
 ///
 /// Frame:   whatever the points are in, usually base.
-/// Memory:  about 95 bytes a cell, and 25 kB.
+/// Memory:  about 95 bytes a cell, and 25 kB (3 kB on a microcontroller).
 /// Time:    O(1) a point, whatever the coordinates; view() is O(cells).
 /// Context: real-time safe; one thread at a time.
 /// Source:  the paper's equations 8 (with k from z) and 9.
