@@ -64,8 +64,11 @@ bool is_same_wall(const RingCandidate& a, const RingCandidate& b) noexcept {
          std::abs(a.radius_mm - b.radius_mm) < kSameRadiusShare * a.radius_mm;
 }
 
-bool is_bore_of(const RingCandidate& inner, const RingCandidate& outer) noexcept {
-  const double wall = outer.radius_mm - inner.radius_mm;
+// A ring farther up the same cone is narrower too: the wall is measured at the inner ring's height.
+bool is_bore_of(const RingCandidate& inner, const RingCandidate& outer,
+                const Surface& outside) noexcept {
+  const double up_mm = outside.axis.dot(inner.centre_base - outside.point);
+  const double wall = outside.radius_mm + outside.slope * up_mm - inner.radius_mm;
   return wall > kMinWallMm && wall < kMaxWallShare * outer.radius_mm && is_coaxial(inner, outer);
 }
 
@@ -240,10 +243,14 @@ void RingFinder::keep(const RingCandidate& ring, const Joint& joint) noexcept {
 
 // Inside another ring about the same axis: the joint is on the nozzle's outside, not in its bore.
 bool RingFinder::is_bore(const RingCandidate& ring) const noexcept {
-  return std::ranges::any_of(rings_.view(), [&](const RingCandidate& other) {
-    return is_bore_of(ring, other) && other.fate == RingFate::kOutscored &&
-           kOutside * merit_of(other) > merit_of(ring);
-  });
+  for (std::size_t i = 0; i < rings_.size(); ++i) {
+    const RingCandidate& other = rings_[i];
+    if (other.fate == RingFate::kOutscored && kOutside * merit_of(other) > merit_of(ring) &&
+        is_bore_of(ring, other, joints_[i].nozzle)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 // The largest of them: what lies nearer to it than to the nozzle is not the nozzle's outside.
@@ -251,7 +258,7 @@ std::optional<Surface> RingFinder::bore_of(std::size_t chosen) const noexcept {
   std::size_t best = chosen;
   for (std::size_t i = 0; i < rings_.size(); ++i) {
     const bool larger = best == chosen || rings_[i].radius_mm > rings_[best].radius_mm;
-    if (is_bore_of(rings_[i], rings_[chosen]) && larger) {
+    if (larger && is_bore_of(rings_[i], rings_[chosen], joints_[chosen].nozzle)) {
       best = i;
     }
   }

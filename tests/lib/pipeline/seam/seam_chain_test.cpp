@@ -97,6 +97,29 @@ std::vector<Joint> joints() {
 INSTANTIATE_TEST_SUITE_P(Joints, SeamOfJoint, testing::ValuesIn(joints()),
                          [](const auto& given) { return std::string(given.param.name); });
 
+// A ring higher up a cone is narrower, as one in a bore is.
+TEST(SeamChain, keeps_the_wall_of_a_cone_that_carries_a_collar) {
+  JointCloudConfig config;
+  config.shell = JointCloudConfig::Shell::kPlane;
+  config.nozzle_slope = -0.1;
+  JointCloud cloud(config);
+  const double height_mm = 40.0;
+  const double radius_mm = config.nozzle_radius_mm + config.nozzle_slope * height_mm;
+  for (double phi = 0.0; phi < 0.4 * 2.0 * std::numbers::pi; phi += 1.0 / radius_mm) {
+    for (double away_mm = 0.5; away_mm < 25.0; away_mm += 1.0) {
+      const double r = radius_mm + away_mm;
+      cloud.add({r * std::cos(phi), r * std::sin(phi), height_mm});
+    }
+  }
+  SeamFinder finder;
+  const SeamReport without = finder.find(JointCloud(config));
+
+  const SeamReport report = finder.find(cloud);
+
+  EXPECT_TRUE(report.weld()) << name(report.refusal);
+  EXPECT_GT(report.joint.num_nozzle_points, 0.95 * without.joint.num_nozzle_points);
+}
+
 TEST(SeamChain, gives_an_ordered_closed_curve_with_even_steps_and_the_normals_of_both_surfaces) {
   const JointCloud cloud(paper_joint());
   SeamFinder finder;
