@@ -7,15 +7,14 @@
 
 #include "dseam/base/random.hpp"
 #include "dseam/calibration/hand_eye.hpp"
+#include "support/gaussian.hpp"
 
 namespace dseam::calibration::test {
 
 inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-inline double gaussian(Pcg32& random) {
-  const double u = 1.0 - random.uniform();
-  return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * random.uniform());
-}
+using dseam::test::gaussian;
+
 inline Eigen::Vector3d gaussian3(Pcg32& random) {
   return {gaussian(random), gaussian(random), gaussian(random)};
 }

@@ -51,6 +51,14 @@ double dot(const ResidualModel::Row& a, const ResidualModel::Row& b) noexcept {
   return sum;
 }
 
+// Of what `count` patches tell that are no more than one. A fit takes as large a share of the
+// squares as it has unknowns among the independent patches; of hardly any share little is told.
+double variance_of(double squares, double num_patches, double num_columns, double count) noexcept {
+  constexpr double kLeastShare = 0.25;
+  const double left = std::max(kLeastShare, 1.0 - num_columns * count / num_patches);
+  return count * squares / (num_patches * left);
+}
+
 }  // namespace
 
 void ResidualModel::reset(const Surface& surface) noexcept {
@@ -155,8 +163,8 @@ Surface ResidualModel::move_into(const Surface& surface) noexcept {
 }
 
 // From the rests of a moderate order, which follows most parts but not their noise.
-double ResidualModel::patches_in_one(std::span<const Patch> patches,
-                                     const PatchGrid& grid) noexcept {
+ResidualModel::InOne ResidualModel::patches_in_one(std::span<const Patch> patches,
+                                                   const PatchGrid& grid) noexcept {
   std::array<float, kMaxPatches> rests;
   Columns columns = columns_of({true, 2, 1});
   if (patches.size() < 2 * columns.count) {
@@ -164,14 +172,18 @@ double ResidualModel::patches_in_one(std::span<const Patch> patches,
   }
   Row solution;
   if (!solve(columns, solution)) {
-    return 1.0;
+    return {};
   }
   Row row;
   for (std::size_t i = 0; i < patches.size(); ++i) {
     row_at(patches[i].mean, patches[i].phi_rad, patches[i].away, row);
     rests[i] = static_cast<float>(patches[i].distance_mm - dot(row, solution));
   }
-  return seam::patches_in_one(patches, std::span(rests).first(patches.size()), grid, columns.count);
+  const auto of = [&](Neighbours neighbours) {
+    return seam::patches_in_one(patches, std::span(rests).first(patches.size()), grid,
+                                columns.count, neighbours);
+  };
+  return {of(Neighbours::kRound), of(Neighbours::kAllAround)};
 }
 
 bool ResidualModel::fit(std::span<const Patch> patches, const PatchGrid& grid) noexcept {
@@ -188,7 +200,7 @@ bool ResidualModel::fit(std::span<const Patch> patches, const PatchGrid& grid) n
   Fitted& f = fitted_[0];
   f.valid = false;
   f.damping = 0.0;
-  const double in_one = patches_in_one(patches, grid);
+  const auto [in_one, in_one_of_errors] = patches_in_one(patches, grid);
   const double n = static_cast<double>(patches.size()) / in_one;
   double best = 1e300;
   for (const Order& order : kOrders) {
@@ -211,7 +223,7 @@ bool ResidualModel::fit(std::span<const Patch> patches, const PatchGrid& grid) n
       f.valid = true;
       f.columns = columns;
       f.harmonics = std::max(order.constant, order.oval ? 3 : -1);
-      f.variance_mm2 = in_one * rest / std::max(1.0, n - p);
+      f.variance_mm2 = variance_of(in_one * rest, in_one * n, p, in_one_of_errors);
     }
   }
   return f.valid && solve(f.columns, f.solution);

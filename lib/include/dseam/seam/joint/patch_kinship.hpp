@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace dseam::seam {
@@ -27,14 +28,21 @@ struct PatchGrid {
 inline constexpr std::size_t kMaxPatches = 512;
 inline constexpr std::size_t kPatchesAway = 4;
 
+/// Which patches are compared with their neighbours.
+enum class Neighbours : std::uint8_t {
+  kRound,      ///< Those round the joint: a deviation hangs together away from it, as noise does.
+  kAllAround,  ///< Both: twice as many, so that the number swings less with the noise.
+};
+
 /// How many patches tell no more than one, because neighbours err alike.
 ///
-/// Scanners err alike over some distance, in all directions. How far is seen round the joint; away
-/// from it a fit leaves nothing of it. What the fit took out of the rests is put back.
+/// Scanners err alike over some distance, in all directions. What the fit took out of the rests is
+/// put back.
 ///
 /// Shape:   `rests[i]` is what a fit with `num_columns` unknowns leaves of `patches[i]`.
 /// Source:  variance inflation of a mean; correlation falling as exp(-(d / L)^2).
 [[nodiscard]] double patches_in_one(std::span<const Patch> patches, std::span<const float> rests,
-                                    const PatchGrid& grid, std::size_t num_columns) noexcept;
+                                    const PatchGrid& grid, std::size_t num_columns,
+                                    Neighbours neighbours) noexcept;
 
 }  // namespace dseam::seam

@@ -66,7 +66,11 @@ class ResidualModel {
     std::array<std::size_t, kColumns> index{};
     std::size_t count = 0;
   };
-
+  // How many patches tell no more than one: for the choice of the order, and for the errors.
+  struct InOne {
+    double of_choice = 1.0;
+    double of_errors = 1.0;
+  };
   struct Fitted {
     Surface surface;
     Row right{};
@@ -84,7 +88,8 @@ class ResidualModel {
   [[nodiscard]] Columns columns_of(const Order& order) const noexcept;
   bool solve(const Columns& columns, Row& solution) noexcept;
   [[nodiscard]] double squares(const Columns& columns, const Row& solution) const noexcept;
-  double patches_in_one(std::span<const Patch> patches, const PatchGrid& grid) noexcept;
+  [[nodiscard]] InOne patches_in_one(std::span<const Patch> patches,
+                                     const PatchGrid& grid) noexcept;
 
   std::span<double> normal_;
   std::span<double> factor_;
