@@ -69,6 +69,46 @@ TEST(EdgeCurve, follows_round_shifted_oval_and_squarish_holes) {
   }
 }
 
+// The pixels on both sides of the edge hang between the two depths, a few by chance at the shell's.
+TEST(EdgeCurve, runs_amid_intervals_that_all_end_a_pixel_away_and_says_how_free_it_is) {
+  constexpr double kPixelMm = 0.4;
+  std::vector<EdgeInterval> intervals = intervals_of(shifted_hole, 0.01, 3);
+  for (EdgeInterval& interval : intervals) {
+    interval.low_mm -= kPixelMm;
+    interval.high_mm += kPixelMm;
+  }
+  EdgeCurve curve;
+
+  ASSERT_TRUE(curve.fit(intervals));
+
+  EXPECT_LT(deviation(curve, shifted_hole).max_mm, 0.25 * kPixelMm);
+  EXPECT_NEAR(std::sqrt(curve.variance_at(1.0)), 2.0 * kPixelMm / std::sqrt(12.0), 0.1 * kPixelMm);
+}
+
+// Holes ever more oval, until the curve takes it in: what it left out before is what it says.
+TEST(EdgeCurve, knows_how_oval_a_hole_may_be_that_it_takes_for_round) {
+  double most_mm = 0.0;
+  double said_mm2 = 0.0;
+  for (double oval_mm = 0.0; oval_mm < 0.05; oval_mm += 0.001) {
+    std::vector<EdgeInterval> intervals = intervals_of(round_hole, 0.0, 7);
+    for (EdgeInterval& interval : intervals) {
+      interval.low_mm += oval_mm * std::cos(2.0 * interval.phi_rad);
+      interval.high_mm += oval_mm * std::cos(2.0 * interval.phi_rad);
+    }
+    EdgeCurve curve;
+    ASSERT_TRUE(curve.fit(intervals));
+    if (curve.order() > 1) {
+      break;
+    }
+    most_mm = oval_mm;
+    said_mm2 = curve.unnoticed_variance_at(0.0);
+  }
+
+  // Mean over all sizes that may hide and over the angle: a quarter of the largest one's square.
+  EXPECT_GT(most_mm, 0.0);
+  EXPECT_NEAR(std::sqrt(said_mm2), 0.5 * most_mm, 0.25 * most_mm);
+}
+
 TEST(EdgeCurve, does_not_bend_for_noise) {
   const auto intervals = intervals_of(round_hole, 0.0, 5);
   EdgeCurve curve;

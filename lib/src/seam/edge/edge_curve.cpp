@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "dseam/seam/joint/dense_solver.hpp"
@@ -24,6 +25,7 @@ constexpr int kRounds = 3;  // Newton steps at one blur.
 constexpr double kKinship =
     2.0;  // Lines of pixels next to each other err alike: so many count once.
 constexpr double kMaxStepMm = 1.0;
+constexpr double kDeadShare = 0.25;  // Of an interval's width: less may be chance.
 
 std::size_t sector_of(double phi_rad) noexcept {
   const double turn = phi_rad / (2.0 * std::numbers::pi);
@@ -168,7 +170,7 @@ bool EdgeCurve::fit(std::span<const EdgeInterval> intervals, double smear_mm) no
   for (const EdgeInterval& interval : intervals) {
     start[0] += 0.5 * (interval.low_mm + interval.high_mm) / static_cast<double>(intervals.size());
   }
-  const double count = static_cast<double>(intervals.size()) / kKinship;
+  log_count_ = std::log(static_cast<double>(intervals.size()) / kKinship);
   double least = 1e300;
   Fit best;
   for (const std::size_t order : kOrders) {
@@ -177,7 +179,7 @@ bool EdgeCurve::fit(std::span<const EdgeInterval> intervals, double smear_mm) no
     }
     const Fit found = solve(intervals, start, order);
     const double criterion =
-        -2.0 * found.log_likelihood / kKinship + static_cast<double>(order) * std::log(count);
+        -2.0 * found.log_likelihood / kKinship + static_cast<double>(order) * log_count_;
     if (criterion < least && stays_among(intervals)) {
       least = criterion;
       best = found;
@@ -190,10 +192,54 @@ bool EdgeCurve::fit(std::span<const EdgeInterval> intervals, double smear_mm) no
   blur_mm_ = best.blur_mm;
   coefficients_ = best.coefficients;
   (void)improve(intervals);
+  centre_in_dead_zone(intervals);
   estimate_covariance(intervals);
   estimate_slack(intervals);
   return std::all_of(coefficients_.begin(), coefficients_.end(),
                      [](double c) { return std::isfinite(c); });
+}
+
+// How far from the curve the nearest ends of its intervals lie, on one side of it. Ends that lie
+// everywhere begin at the curve, whatever part of them is looked at; wrong ones are too few to
+// count.
+double EdgeCurve::dead_mm(std::span<const EdgeInterval> intervals, bool outwards) const noexcept {
+  constexpr double kBinMm = 0.004;
+  constexpr double kShare = 0.05;
+  std::array<std::uint32_t, 512> histogram{};
+  double kept = 0.0;
+  for (const EdgeInterval& interval : intervals) {
+    const double value = at(interval.phi_rad);
+    if (value > interval.low_mm && value < interval.high_mm) {
+      const double away = outwards ? interval.high_mm - value : value - interval.low_mm;
+      ++histogram[std::min(static_cast<std::size_t>(away / kBinMm), histogram.size() - 1)];
+      kept += 1.0;
+    }
+  }
+  const auto quantile_mm = [&](double share) {
+    double below = 0.0;
+    std::size_t i = 0;
+    while (i + 1 < histogram.size() && below + histogram[i] < share * kept) {
+      below += histogram[i++];
+    }
+    return kBinMm * (static_cast<double>(i) + (share * kept - below) / std::max(1U, histogram[i]));
+  };
+  return std::max(0.0, 2.0 * quantile_mm(kShare) - quantile_mm(2.0 * kShare));
+}
+
+// Where every pixel at an edge flies, no interval ends near it: the edge may be anywhere in
+// between.
+void EdgeCurve::centre_in_dead_zone(std::span<const EdgeInterval> intervals) noexcept {
+  double width_mm = 0.0;
+  for (const EdgeInterval& interval : intervals) {
+    width_mm += (interval.high_mm - interval.low_mm) / static_cast<double>(intervals.size());
+  }
+  const double inwards_mm = dead_mm(intervals, false);
+  const double outwards_mm = dead_mm(intervals, true);
+  dead_mm_ = 0.0;
+  if (inwards_mm + outwards_mm > kDeadShare * width_mm) {
+    dead_mm_ = inwards_mm + outwards_mm;
+    coefficients_[0] += 0.5 * (outwards_mm - inwards_mm);
+  }
 }
 
 // The filling of a sandwich: what one sector's intervals pull together counts once.
@@ -263,7 +309,7 @@ double EdgeCurve::variance_at(double phi_rad) const noexcept {
   const double slack = slack_mm_[sector_of(phi_rad)];
   const double least = slack == kUnheld ? slack * slack / 12.0 : 0.0;
   return scatter + smear_mm_ * smear_mm_ / 12.0 +
-         std::max(least, std::min(freedom, slack * slack / 12.0));
+         std::max({least, std::min(freedom, slack * slack / 12.0), dead_mm_ * dead_mm_ / 12.0});
 }
 
 }  // namespace dseam::seam

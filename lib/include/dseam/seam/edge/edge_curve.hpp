@@ -37,8 +37,14 @@ class EdgeCurve {
   bool fit(std::span<const EdgeInterval> intervals, double smear_mm = 0.0) noexcept;
 
   [[nodiscard]] double at(double phi_rad) const noexcept;
-  /// Of at(): what the votes disagree about, and how far the intervals leave the curve free.
+  /// Of at(): what the votes disagree about, and how far the intervals leave the curve free, which
+  /// then runs in the middle of what they leave.
   [[nodiscard]] double variance_at(double phi_rad) const noexcept;
+  /// Of a harmonic that the criterion may have left out though it is there: of its pair of
+  /// coefficients, as likely to be anything that would not have been taken in.
+  [[nodiscard]] double unnoticed_variance_at(double phi_rad) const noexcept {
+    return log_count_ * variance_at(phi_rad) / static_cast<double>(order_);
+  }
   /// Whether an interval lies within about ten degrees.
   [[nodiscard]] bool held_at(double phi_rad) const noexcept;
   [[nodiscard]] std::size_t harmonics() const noexcept { return (order_ - 1) / 2; }
@@ -60,12 +66,17 @@ class EdgeCurve {
   double improve(std::span<const EdgeInterval> intervals) noexcept;
   Fit solve(std::span<const EdgeInterval> intervals, const Vector& start,
             std::size_t order) noexcept;
+  [[nodiscard]] double dead_mm(std::span<const EdgeInterval> intervals,
+                               bool outwards) const noexcept;
+  void centre_in_dead_zone(std::span<const EdgeInterval> intervals) noexcept;
   void estimate_slack(std::span<const EdgeInterval> intervals) noexcept;
   void estimate_covariance(std::span<const EdgeInterval> intervals) noexcept;
 
   std::size_t order_ = 1;
   double blur_mm_ = 1.0;
   double smear_mm_ = 0.0;
+  double dead_mm_ = 0.0;    // Across the curve, in which no interval ends.
+  double log_count_ = 0.0;  // Of the intervals that err by themselves.
   std::array<double, kSectors> slack_mm_{};
   Vector coefficients_{};
   Storage normal_{};  // Its Cholesky factor after improve().
