@@ -95,7 +95,7 @@ std::vector<Key> scanner_keys(Settings& s) {
   markers::MarkerFinder::Config& finder = s.pipeline.splice.finder;
   return {
       {"scanner", "sigma_mm", &s.seam.scanner_sigma_mm,
-       "Error that its calibration leaves, the same in all views", "mm", 0, 10},
+       "Error of depth that its calibration leaves, the same in all views", "mm", 0, 10},
       {"scanner", "bowl_sigma_mm", &network.bowl_sigma_mm,
        "Of a depth bowl at the sides of the image", "mm", 0.0001, 10},
       {"scanner", "offset_sigma_mm", &network.offset_sigma_mm,

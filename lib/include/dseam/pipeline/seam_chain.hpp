@@ -61,7 +61,7 @@ class SeamChain {
     double point_spacing_mm = 0.5;
     double start_angle_rad = 0.0;     ///< About the nozzle's axis, from base x laid into the ring.
     bool counter_clockwise = true;    ///< Seen from the nozzle's free end.
-    double scanner_sigma_mm = 0.006;  ///< What its calibration leaves, the same in all views.
+    double scanner_sigma_mm = 0.008;  ///< Of depth, what its calibration leaves in all views alike.
     double hand_eye_sigma_mm = 0.0;   ///< 0: not known; added to the predicted sigmas.
   };
   struct Capacity {

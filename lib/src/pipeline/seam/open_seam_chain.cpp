@@ -171,9 +171,11 @@ void OpenSeamChain::build_curve(const SeamInput& in, seam::SeamReport& report,
                                 Buffer<seam::SeamPoint>& out) noexcept {
   const seam::OpenSides& sides = sides_[0];
   const Eigen::Vector3d middle = track_.at(0.5 * track_.length_mm()).p;
-  const seam::ErrorSources errors{
-      std::hypot(pose_sigma_of(in.views, middle), config_.scanner_sigma_mm),
-      config_.hand_eye_sigma_mm, 0.0};
+  const seam::ErrorSources errors{pose_sigma_of(in.views, middle),
+                                  config_.scanner_sigma_mm,
+                                  config_.hand_eye_sigma_mm,
+                                  0.0,
+                                  {}};
   seam::OpenCurve curve;
   const seam::OpenCurve::Report built =
       curve.run({report.reference, config_.point_spacing_mm, config_.counter_clockwise}, joint_,

@@ -23,7 +23,7 @@ constexpr double kStepRad = 2e-3;  // Of the central difference that gives the t
 
 CurveBuilder::Report CurveBuilder::run(const Config& config, const JointFit& fit,
                                        const JointEdges& edges, const RingCoverage& coverage,
-                                       const ErrorSources& errors,
+                                       const ErrorSources& sources,
                                        Buffer<SeamPoint>& out) noexcept {
   config_ = config;
   fit_ = &fit;
@@ -34,14 +34,14 @@ CurveBuilder::Report CurveBuilder::run(const Config& config, const JointFit& fit
     return report;
   }
   report.length_mm = lengths_[kStations];
-  measure_unfollowed();
+  prepare_errors(sources);
   const double count = std::max(16.0, std::round(report.length_mm / config.point_spacing_mm));
   if (!(count <= static_cast<double>(out.capacity()))) {
     report.full = true;
     return report;
   }
   for (double i = 0.0; i < count; i += 1.0) {
-    (void)out.append(point_at(report.length_mm * i / count, coverage, errors));
+    (void)out.append(point_at(report.length_mm * i / count, coverage));
   }
   const auto again = place(angle_of(kTurnRad), stations_[0]);
   report.closure_mm = again ? (*again - out[0].p_base).norm() : report.length_mm;
@@ -140,17 +140,19 @@ bool CurveBuilder::measure_length() noexcept {
   return true;
 }
 
-void CurveBuilder::measure_unfollowed() noexcept {
+void CurveBuilder::prepare_errors(const ErrorSources& sources) noexcept {
   constexpr std::size_t kEvery = 16;
-  unfollowed_.reset(edges_.shell == nullptr ? 0 : edges_.shell->order());
-  for (std::size_t i = 0; i < kStations && edges_.shell != nullptr; i += kEvery) {
-    const double phi = angle_of(kTurnRad * static_cast<double>(i) / double{kStations});
-    unfollowed_.add(phi, fit_->nozzle_errors(stations_[i]));
+  const EdgeCurve* edge = edge_in_use();
+  const bool aside = edge == edges_.shell;
+  ErrorSources known = sources;
+  known.hidden_gap_mm = config_.reference == ReferenceCurve::kRoot ? 0.0 : sources.hidden_gap_mm;
+  errors_.reset(*fit_, {aside ? edge : nullptr, aside ? nullptr : edge}, known);
+  for (std::size_t i = 0; i < kStations; i += kEvery) {
+    errors_.add(angle_of(kTurnRad * static_cast<double>(i) / double{kStations}), stations_[i]);
   }
 }
 
-SeamPoint CurveBuilder::point_at(double s_mm, const RingCoverage& coverage,
-                                 const ErrorSources& errors) const noexcept {
+SeamPoint CurveBuilder::point_at(double s_mm, const RingCoverage& coverage) const noexcept {
   const auto after = std::upper_bound(lengths_.begin() + 1, lengths_.end() - 1, s_mm);
   const auto i = static_cast<std::size_t>(after - lengths_.begin()) - 1;
   const double part = (s_mm - lengths_[i]) / (lengths_[i + 1] - lengths_[i]);
@@ -176,34 +178,9 @@ SeamPoint CurveBuilder::point_at(double s_mm, const RingCoverage& coverage,
   point.mismatch_mm = edges_.nozzle == nullptr ? 0.0 : std::max(0.0, edges_.nozzle->at(phi));
   const bool measured = placed && coverage.measured_at(phi) && held_at(phi);
   point.source = measured ? Source::kMeasured : Source::kInterpolated;
-  estimate_errors(point, phi, errors);
+  errors_.estimate(phi, point);
   point.confidence = placed ? confidence_of(point, coverage.hole_at(phi)) : Confidence::kNone;
   return point;
-}
-
-// The curve is displaced where its two surfaces are, and by what both err alike. Of the shell's
-// edge the distance from the nozzle was measured, so that most of the nozzle's own error does not
-// count.
-void CurveBuilder::estimate_errors(SeamPoint& point, double phi_rad,
-                                   const ErrorSources& errors) const noexcept {
-  const double common = errors.surface_sigma_mm * errors.surface_sigma_mm +
-                        errors.hand_eye_sigma_mm * errors.hand_eye_sigma_mm;
-  const EdgeCurve* edge = edge_in_use();
-  const double of_edge = edge == nullptr ? 0.0 : edge->variance_at(phi_rad);
-  const bool aside = edge != nullptr && edge == edges_.shell;
-  const bool raised = edge != nullptr && edge == edges_.nozzle;
-  const double shell = fit_->shell_variance(point.p_base) + (raised ? of_edge : 0.0);
-  const double nozzle = aside ? unfollowed_.variance_at(phi_rad, fit_->nozzle_errors(point.p_base))
-                              : fit_->nozzle_variance(point.p_base);
-  const double cosine = point.n_shell.dot(point.n_nozzle);
-  const double sine_squared = std::max(1e-3, 1.0 - cosine * cosine);
-  // A gap of unknown width is as likely to be anything up to its bound.
-  const bool by_surfaces = config_.reference == ReferenceCurve::kRoot || raised;
-  const double hidden = by_surfaces ? 0.0 : errors.hidden_gap_mm;
-  const double lateral = (nozzle + cosine * cosine * shell) / sine_squared +
-                         (aside ? of_edge : 0.0) + hidden * hidden / 12.0;
-  point.sigma_lateral_mm = std::sqrt(lateral + common);
-  point.sigma_normal_mm = std::sqrt(shell + common);
 }
 
 }  // namespace dseam::seam

@@ -141,7 +141,8 @@ void OpenCurve::describe_opening(SeamPoint& point, double s_mm) const noexcept {
 void OpenCurve::estimate_errors(SeamPoint& point, double s_mm,
                                 const ErrorSources& errors) const noexcept {
   const double along = sides_->along_of(s_mm);
-  const double common = errors.surface_sigma_mm * errors.surface_sigma_mm;
+  const double common =
+      errors.pose_sigma_mm * errors.pose_sigma_mm + errors.depth_sigma_mm * errors.depth_sigma_mm;
   const double hand_eye = errors.hand_eye_sigma_mm * errors.hand_eye_sigma_mm;
   const auto& first = sides_->side(0);
   const auto& second = sides_->side(1);

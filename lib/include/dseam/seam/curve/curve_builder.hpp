@@ -3,23 +3,15 @@
 
 #include <array>
 #include <optional>
-#include <span>
 
 #include "dseam/base/buffer.hpp"
 #include "dseam/seam/curve/coverage.hpp"
+#include "dseam/seam/curve/point_errors.hpp"
 #include "dseam/seam/edge/edge_curve.hpp"
-#include "dseam/seam/edge/unfollowed_error.hpp"
 #include "dseam/seam/joint/joint_fit.hpp"
 #include "dseam/seam/seam_curve.hpp"
 
 namespace dseam::seam {
-
-/// What is known beyond the fit and enters the predicted errors.
-struct ErrorSources {
-  double surface_sigma_mm = 0.0;   ///< Of both surfaces alike: scanner and views' poses.
-  double hand_eye_sigma_mm = 0.0;  ///< 0: not known, left out.
-  double hidden_gap_mm = 0.0;      ///< No edge was seen; a gap of up to this is not excluded.
-};
 
 /// Walks once round a joint and writes the reference curve as evenly spaced points.
 ///
@@ -42,7 +34,7 @@ class CurveBuilder {
   };
 
   Report run(const Config& config, const JointFit& fit, const JointEdges& edges,
-             const RingCoverage& coverage, const ErrorSources& errors,
+             const RingCoverage& coverage, const ErrorSources& sources,
              Buffer<SeamPoint>& out) noexcept;
 
  private:
@@ -56,17 +48,15 @@ class CurveBuilder {
   [[nodiscard]] double offset_at(double phi_rad) const noexcept;
   [[nodiscard]] double height_at(double phi_rad) const noexcept;
   bool measure_length() noexcept;
-  void measure_unfollowed() noexcept;
-  SeamPoint point_at(double s_mm, const RingCoverage& coverage,
-                     const ErrorSources& errors) const noexcept;
-  void estimate_errors(SeamPoint& point, double phi_rad, const ErrorSources& errors) const noexcept;
+  void prepare_errors(const ErrorSources& sources) noexcept;
+  SeamPoint point_at(double s_mm, const RingCoverage& coverage) const noexcept;
 
   Config config_;
   const JointFit* fit_ = nullptr;
   JointEdges edges_;
   std::array<Eigen::Vector3d, kStations> stations_;
   std::array<double, kStations + 1> lengths_{};
-  UnfollowedError unfollowed_;
+  PointErrors errors_;
 };
 
 }  // namespace dseam::seam

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "dseam/base/buffer.hpp"
-#include "dseam/seam/curve/curve_builder.hpp"
+#include "dseam/seam/curve/point_errors.hpp"
 #include "dseam/seam/open/open_sides.hpp"
 #include "dseam/seam/seam_curve.hpp"
 
