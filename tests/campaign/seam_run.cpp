@@ -13,6 +13,7 @@
 #include "support/accuracy/fused_scan.hpp"
 #include "support/accuracy/seam_accuracy.hpp"
 #include "support/arena_owner.hpp"
+#include "support/gaussian.hpp"
 
 namespace dseam::campaign {
 namespace {
@@ -85,10 +86,21 @@ void find_with_spliced_poses(const Cell& cell, const test::TrueScan& scan, std::
   score(*truth, pipeline->seam_points(), test::base_correction(poses, *truth), seed, out);
 }
 
+// A factor for the depth bowl, another one in each row.
+double drawn_bowl(const Row& row, std::uint64_t seed) {
+  std::uint64_t stream = 0;
+  for (const char* c = row.name; *c != '\0'; ++c) {
+    stream = 31 * stream + static_cast<unsigned char>(*c);
+  }
+  Pcg32 random(seed, stream);
+  return test::gaussian(random);
+}
+
 }  // namespace
 
-Outcome run(const Row& row, std::uint64_t seed, std::uint32_t shrink) {
+Outcome run(const Row& row, std::uint64_t seed, std::uint32_t shrink, Scanner scanner) {
   hal::sim::CellConfig config = cell_of(row, seed);
+  config.scanner.bowl_mm *= scanner == Scanner::kDrawn ? drawn_bowl(row, seed) : 1.0;
   config.scanner.width /= shrink;
   config.scanner.height /= shrink;
   const Cell cell = Cell::make(config).value();

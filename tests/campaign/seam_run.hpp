@@ -21,8 +21,13 @@ struct Outcome {
   double milliseconds = 0.0;  ///< Of the seam chain alone; of everything where views are spliced.
 };
 
+/// The simulated scanner as it is, or one for each scan: its depth bowl drawn, the default's size
+/// being the standard deviation. Errors that scans share make no independent scans of them.
+enum class Scanner { kDefault, kDrawn };
+
 /// Scans the part with frames of 1296 by 966 pixels over `shrink` each way, finds its seam with the
 /// row's poses, and scores it by the truth.
-[[nodiscard]] Outcome run(const Row& row, std::uint64_t seed, std::uint32_t shrink = 1);
+[[nodiscard]] Outcome run(const Row& row, std::uint64_t seed, std::uint32_t shrink = 1,
+                          Scanner scanner = Scanner::kDefault);
 
 }  // namespace dseam::campaign
