@@ -85,6 +85,23 @@ TEST(EdgeCurve, runs_amid_intervals_that_all_end_a_pixel_away_and_says_how_free_
   EXPECT_NEAR(std::sqrt(curve.variance_at(1.0)), 2.0 * kPixelMm / std::sqrt(12.0), 0.1 * kPixelMm);
 }
 
+TEST(EdgeCurve, is_as_uncertain_as_intervals_are_wide_that_contradict_each_other) {
+  std::vector<EdgeInterval> intervals = intervals_of(round_hole, 0.0, 3);
+  double width_mm = 0.0;
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    EdgeInterval& interval = intervals[i];
+    interval.low_mm +=
+        i % 4 == 0 ? 0.6 : 0.0;  // A flying pixel of the shell passed for one past it.
+    interval.high_mm = std::max(interval.high_mm, interval.low_mm + 0.3);
+    width_mm += (interval.high_mm - interval.low_mm) / static_cast<double>(intervals.size());
+  }
+  EdgeCurve curve;
+
+  ASSERT_TRUE(curve.fit(intervals));
+
+  EXPECT_GT(std::sqrt(curve.variance_at(1.0)), 0.9 * width_mm / std::sqrt(12.0));
+}
+
 // Holes ever more oval, until the curve takes it in: what it left out before is what it says.
 TEST(EdgeCurve, knows_how_oval_a_hole_may_be_that_it_takes_for_round) {
   double most_mm = 0.0;

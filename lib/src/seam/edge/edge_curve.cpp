@@ -18,7 +18,8 @@ constexpr double kUnheld =
     -1.0;  // Slack of a sector in which nothing was seen: free by 1 mm, and marked.
 constexpr double kMaxSlackMm = 8.0;
 constexpr double kWrongShare = 0.01;  // Of the intervals: flying pixels, spatter, a clamp's shadow.
-constexpr double kFirstBlurMm = 0.3;  // Wide at first: the first curve may be anywhere.
+constexpr double kMaxWrongShare = 0.15;  // Noise of 0.3 mm makes a tenth of them wrong.
+constexpr double kFirstBlurMm = 0.3;     // Wide at first: the first curve may be anywhere.
 constexpr double kShrink = 0.5;
 constexpr double kLeastBlurMm = 0.004;
 constexpr int kRounds = 3;  // Newton steps at one blur.
@@ -192,7 +193,7 @@ bool EdgeCurve::fit(std::span<const EdgeInterval> intervals, double smear_mm) no
   blur_mm_ = best.blur_mm;
   coefficients_ = best.coefficients;
   (void)improve(intervals);
-  centre_in_dead_zone(intervals);
+  estimate_freedom(intervals);
   estimate_covariance(intervals);
   estimate_slack(intervals);
   return std::all_of(coefficients_.begin(), coefficients_.end(),
@@ -227,17 +228,22 @@ double EdgeCurve::dead_mm(std::span<const EdgeInterval> intervals, bool outwards
 }
 
 // Where every pixel at an edge flies, no interval ends near it: the edge may be anywhere in
-// between.
-void EdgeCurve::centre_in_dead_zone(std::span<const EdgeInterval> intervals) noexcept {
+// between. And where many end on the wrong side they are no ends of an edge: it may be anywhere in
+// them.
+void EdgeCurve::estimate_freedom(std::span<const EdgeInterval> intervals) noexcept {
   double width_mm = 0.0;
+  double wrong_share = 0.0;
   for (const EdgeInterval& interval : intervals) {
+    const double value = at(interval.phi_rad);
+    const bool wrong = interval.low_mm > value || interval.high_mm < value;
     width_mm += (interval.high_mm - interval.low_mm) / static_cast<double>(intervals.size());
+    wrong_share += (wrong ? 1.0 : 0.0) / static_cast<double>(intervals.size());
   }
   const double inwards_mm = dead_mm(intervals, false);
   const double outwards_mm = dead_mm(intervals, true);
-  dead_mm_ = 0.0;
+  free_mm_ = wrong_share > kMaxWrongShare ? width_mm : 0.0;
   if (inwards_mm + outwards_mm > kDeadShare * width_mm) {
-    dead_mm_ = inwards_mm + outwards_mm;
+    free_mm_ = std::max(free_mm_, inwards_mm + outwards_mm);
     coefficients_[0] += 0.5 * (outwards_mm - inwards_mm);
   }
 }
@@ -309,7 +315,7 @@ double EdgeCurve::variance_at(double phi_rad) const noexcept {
   const double slack = slack_mm_[sector_of(phi_rad)];
   const double least = slack == kUnheld ? slack * slack / 12.0 : 0.0;
   return scatter + smear_mm_ * smear_mm_ / 12.0 +
-         std::max({least, std::min(freedom, slack * slack / 12.0), dead_mm_ * dead_mm_ / 12.0});
+         std::max({least, std::min(freedom, slack * slack / 12.0), free_mm_ * free_mm_ / 12.0});
 }
 
 }  // namespace dseam::seam

@@ -68,14 +68,14 @@ class EdgeCurve {
             std::size_t order) noexcept;
   [[nodiscard]] double dead_mm(std::span<const EdgeInterval> intervals,
                                bool outwards) const noexcept;
-  void centre_in_dead_zone(std::span<const EdgeInterval> intervals) noexcept;
+  void estimate_freedom(std::span<const EdgeInterval> intervals) noexcept;
   void estimate_slack(std::span<const EdgeInterval> intervals) noexcept;
   void estimate_covariance(std::span<const EdgeInterval> intervals) noexcept;
 
   std::size_t order_ = 1;
   double blur_mm_ = 1.0;
   double smear_mm_ = 0.0;
-  double dead_mm_ = 0.0;    // Across the curve, in which no interval ends.
+  double free_mm_ = 0.0;    // Width of the band in which the intervals leave the curve free.
   double log_count_ = 0.0;  // Of the intervals that err by themselves.
   std::array<double, kSectors> slack_mm_{};
   Vector coefficients_{};
