@@ -171,11 +171,9 @@ void OpenSeamChain::build_curve(const SeamInput& in, seam::SeamReport& report,
                                 Buffer<seam::SeamPoint>& out) noexcept {
   const seam::OpenSides& sides = sides_[0];
   const Eigen::Vector3d middle = track_.at(0.5 * track_.length_mm()).p;
-  const seam::ErrorSources errors{pose_sigma_of(in.views, middle),
-                                  config_.scanner_sigma_mm,
-                                  config_.hand_eye_sigma_mm,
-                                  0.0,
-                                  {}};
+  const seam::ErrorSources errors{.pose_sigma_mm = pose_sigma_of(in.views, middle),
+                                  .depth_sigma_mm = config_.scanner_sigma_mm,
+                                  .hand_eye_sigma_mm = config_.hand_eye_sigma_mm};
   seam::OpenCurve curve;
   const seam::OpenCurve::Report built =
       curve.run({report.reference, config_.point_spacing_mm, config_.counter_clockwise}, joint_,

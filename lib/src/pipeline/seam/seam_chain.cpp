@@ -219,11 +219,14 @@ void SeamChain::build_curve(const SeamInput& in, seam::SeamReport& report,
                             Buffer<seam::SeamPoint>& out) noexcept {
   Workspace& work = work_[0];
   work.coverage.run(fit_, found_, report.spacing_mm);
-  Viewpoints viewpoints;
-  const seam::ErrorSources errors{
-      pose_sigma_of(in.views, fit_.joint().nozzle.point), config_.scanner_sigma_mm,
-      config_.hand_eye_sigma_mm, work.coverage.hidden_gap_mm(),
-      in.frames.empty() ? std::span<const Eigen::Vector3d>{} : viewpoints_of(in.views, viewpoints)};
+  Viewpoints storage;
+  seam::ErrorSources errors{.pose_sigma_mm = pose_sigma_of(in.views, fit_.joint().nozzle.point),
+                            .depth_sigma_mm = config_.scanner_sigma_mm,
+                            .hand_eye_sigma_mm = config_.hand_eye_sigma_mm,
+                            .hidden_gap_mm = work.coverage.hidden_gap_mm()};
+  if (!in.frames.empty()) {
+    errors.viewpoints = viewpoints_of(in.views, storage);
+  }
   report.joint.hidden_gap_mm = errors.hidden_gap_mm;
   const seam::CurveBuilder::Report built =
       work.builder.run({report.reference, config_.point_spacing_mm, config_.start_angle_rad,
