@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 
 #include "dseam/seam/joint/dense_solver.hpp"
+#include "seam/edge/edge_freedom.hpp"
 
 namespace dseam::seam {
 namespace {
@@ -18,15 +18,13 @@ constexpr double kUnheld =
     -1.0;  // Slack of a sector in which nothing was seen: free by 1 mm, and marked.
 constexpr double kMaxSlackMm = 8.0;
 constexpr double kWrongShare = 0.01;  // Of the intervals: flying pixels, spatter, a clamp's shadow.
-constexpr double kMaxWrongShare = 0.15;  // Noise of 0.3 mm makes a tenth of them wrong.
-constexpr double kFirstBlurMm = 0.3;     // Wide at first: the first curve may be anywhere.
+constexpr double kFirstBlurMm = 0.3;  // Wide at first: the first curve may be anywhere.
 constexpr double kShrink = 0.5;
 constexpr double kLeastBlurMm = 0.004;
 constexpr int kRounds = 3;  // Newton steps at one blur.
 constexpr double kKinship =
     2.0;  // Lines of pixels next to each other err alike: so many count once.
 constexpr double kMaxStepMm = 1.0;
-constexpr double kDeadShare = 0.25;  // Of an interval's width: less may be chance.
 
 std::size_t sector_of(double phi_rad) noexcept {
   const double turn = phi_rad / (2.0 * std::numbers::pi);
@@ -193,59 +191,13 @@ bool EdgeCurve::fit(std::span<const EdgeInterval> intervals, double smear_mm) no
   blur_mm_ = best.blur_mm;
   coefficients_ = best.coefficients;
   (void)improve(intervals);
-  estimate_freedom(intervals);
+  const EdgeFreedom freedom = freedom_of(*this, intervals);
+  free_mm_ = freedom.width_mm;
+  coefficients_[0] += freedom.to_middle_mm;
   estimate_covariance(intervals);
   estimate_slack(intervals);
   return std::all_of(coefficients_.begin(), coefficients_.end(),
                      [](double c) { return std::isfinite(c); });
-}
-
-// How far from the curve the nearest ends of its intervals lie, on one side of it. Ends that lie
-// everywhere begin at the curve, whatever part of them is looked at; wrong ones are too few to
-// count.
-double EdgeCurve::dead_mm(std::span<const EdgeInterval> intervals, bool outwards) const noexcept {
-  constexpr double kBinMm = 0.004;
-  constexpr double kShare = 0.05;
-  std::array<std::uint32_t, 512> histogram{};
-  double kept = 0.0;
-  for (const EdgeInterval& interval : intervals) {
-    const double value = at(interval.phi_rad);
-    if (value > interval.low_mm && value < interval.high_mm) {
-      const double away = outwards ? interval.high_mm - value : value - interval.low_mm;
-      ++histogram[std::min(static_cast<std::size_t>(away / kBinMm), histogram.size() - 1)];
-      kept += 1.0;
-    }
-  }
-  const auto quantile_mm = [&](double share) {
-    double below = 0.0;
-    std::size_t i = 0;
-    while (i + 1 < histogram.size() && below + histogram[i] < share * kept) {
-      below += histogram[i++];
-    }
-    return kBinMm * (static_cast<double>(i) + (share * kept - below) / std::max(1U, histogram[i]));
-  };
-  return std::max(0.0, 2.0 * quantile_mm(kShare) - quantile_mm(2.0 * kShare));
-}
-
-// Where every pixel at an edge flies, no interval ends near it: the edge may be anywhere in
-// between. And where many end on the wrong side they are no ends of an edge: it may be anywhere in
-// them.
-void EdgeCurve::estimate_freedom(std::span<const EdgeInterval> intervals) noexcept {
-  double width_mm = 0.0;
-  double wrong_share = 0.0;
-  for (const EdgeInterval& interval : intervals) {
-    const double value = at(interval.phi_rad);
-    const bool wrong = interval.low_mm > value || interval.high_mm < value;
-    width_mm += (interval.high_mm - interval.low_mm) / static_cast<double>(intervals.size());
-    wrong_share += (wrong ? 1.0 : 0.0) / static_cast<double>(intervals.size());
-  }
-  const double inwards_mm = dead_mm(intervals, false);
-  const double outwards_mm = dead_mm(intervals, true);
-  free_mm_ = wrong_share > kMaxWrongShare ? width_mm : 0.0;
-  if (inwards_mm + outwards_mm > kDeadShare * width_mm) {
-    free_mm_ = std::max(free_mm_, inwards_mm + outwards_mm);
-    coefficients_[0] += 0.5 * (outwards_mm - inwards_mm);
-  }
 }
 
 // The filling of a sandwich: what one sector's intervals pull together counts once.

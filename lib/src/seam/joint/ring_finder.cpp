@@ -20,8 +20,7 @@ constexpr double kMinJointCosine = 0.97;   // Surfaces nearer than 14 degrees do
 
 constexpr double kMaxWallShare = 0.6;  // Of a nozzle's radius.
 constexpr double kMinWallMm = 1.5;
-constexpr double kOutside =
-    4.0;  // What an outside is preferred to a bore by: it may be half hidden.
+constexpr double kOutside = 4.0;  // An outside is preferred to a bore: it may be half hidden.
 constexpr double kCoaxialCosine = 0.99;
 constexpr double kMaxOffAxisMm = 5.0;
 constexpr double kMaxOffAxisShare = 0.1;  // Of the radius.
@@ -243,14 +242,13 @@ void RingFinder::keep(const RingCandidate& ring, const Joint& joint) noexcept {
 
 // Inside another ring about the same axis: the joint is on the nozzle's outside, not in its bore.
 bool RingFinder::is_bore(const RingCandidate& ring) const noexcept {
+  bool found = false;
   for (std::size_t i = 0; i < rings_.size(); ++i) {
-    const RingCandidate& other = rings_[i];
-    if (other.fate == RingFate::kOutscored && kOutside * merit_of(other) > merit_of(ring) &&
-        is_bore_of(ring, other, joints_[i].nozzle)) {
-      return true;
-    }
+    found = found || (rings_[i].fate == RingFate::kOutscored &&
+                      kOutside * merit_of(rings_[i]) > merit_of(ring) &&
+                      is_bore_of(ring, rings_[i], joints_[i].nozzle));
   }
-  return false;
+  return found;
 }
 
 // The largest of them: what lies nearer to it than to the nozzle is not the nozzle's outside.

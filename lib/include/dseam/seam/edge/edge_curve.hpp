@@ -66,9 +66,6 @@ class EdgeCurve {
   double improve(std::span<const EdgeInterval> intervals) noexcept;
   Fit solve(std::span<const EdgeInterval> intervals, const Vector& start,
             std::size_t order) noexcept;
-  [[nodiscard]] double dead_mm(std::span<const EdgeInterval> intervals,
-                               bool outwards) const noexcept;
-  void estimate_freedom(std::span<const EdgeInterval> intervals) noexcept;
   void estimate_slack(std::span<const EdgeInterval> intervals) noexcept;
   void estimate_covariance(std::span<const EdgeInterval> intervals) noexcept;
 
