@@ -29,6 +29,9 @@ void CellRuns::sum_up() noexcept {
     return before + lanes::splat(static_cast<std::int32_t>(sums[kLanes - 1]));
   };
   x_.steps[0] = y_.steps[0] = z_.steps[0] = 0;
+  for (Points* axis : {&x_, &y_, &z_}) {  // The last eight reach past the points, to no steps.
+    std::fill_n(axis->steps + size_ + 1, kLanes - 1, 0U);
+  }
   for (std::size_t i = 1; i <= size_; i += kLanes) {  // All three at once: each waits for its sum.
     x = add_eight(x_.steps + i, x);
     y = add_eight(y_.steps + i, y);
